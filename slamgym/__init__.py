@@ -1,0 +1,1 @@
+"""slamgym measures how robust visual SLAM is."""

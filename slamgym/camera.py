@@ -1,0 +1,64 @@
+"""The pinhole camera model and the presets that the `camera` parameter names."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from slamgym.errors import ConfigError, unknown_word
+from slamgym.types import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class PinholeCamera:
+    """Image size in pixels; focal lengths and principal point in pixels, the centre of the top left pixel at (0, 0)."""
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+
+    def __post_init__(self) -> None:
+        if self.width < 1 or self.height < 1:
+            raise ConfigError(f"camera: expected a size of at least 1x1 pixels, got {self.width}x{self.height}")
+        if not all(isfinite(v) and v > 0 for v in (self.fx, self.fy)):
+            raise ConfigError(f"camera: expected finite focal lengths above 0, got fx={self.fx}, fy={self.fy}")
+        if not (isfinite(self.cx) and isfinite(self.cy)):
+            raise ConfigError(f"camera: expected a finite principal point, got cx={self.cx}, cy={self.cy}")
+
+    @property
+    def K(self) -> FloatArray:
+        """Intrinsic matrix (3, 3)."""
+        return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
+
+    def as_dict(self) -> dict[str, float]:
+        return asdict(self)
+
+
+CAMERAS: dict[str, PinholeCamera] = {
+    # 70 degrees across, as the colour camera of common indoor depth cameras.
+    "default": PinholeCamera(640, 480, 460.0, 460.0, 319.5, 239.5),
+    "small": PinholeCamera(320, 240, 230.0, 230.0, 159.5, 119.5),
+    "tum_fr1": PinholeCamera(640, 480, 517.306408, 516.469215, 318.643040, 255.313989),
+}
+
+
+def resolve_camera(camera: str | PinholeCamera | Mapping[str, Any]) -> PinholeCamera:
+    """The camera that a user named, gave, or wrote down as a mapping; raises ConfigError."""
+    if isinstance(camera, PinholeCamera):
+        return camera
+    if isinstance(camera, str):
+        if camera not in CAMERAS:
+            raise ConfigError(unknown_word("camera", camera, CAMERAS))
+        return CAMERAS[camera]
+    names = {field.name for field in fields(PinholeCamera)}
+    for key in camera:
+        if key not in names:
+            raise ConfigError(unknown_word("camera key", str(key), names))
+    if missing := sorted(names - set(camera)):
+        raise ConfigError(f"camera: expected the keys {', '.join(sorted(names))}; missing: {', '.join(missing)}")
+    return PinholeCamera(**camera)

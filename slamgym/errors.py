@@ -1,0 +1,44 @@
+"""Errors that slamgym raises on purpose. Every message says what was expected, what came, and what to do."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class SlamgymError(Exception):
+    """Root of all errors that slamgym raises on purpose."""
+
+
+class ConfigError(SlamgymError, ValueError):
+    """A parameter has an unknown name or a value outside its range."""
+
+
+class SceneError(SlamgymError):
+    """A scene cannot be loaded, or the robot cannot drive in it."""
+
+
+class RenderError(SlamgymError):
+    """No image can be rendered on this machine, for example because EGL is missing."""
+
+
+class SlamError(SlamgymError):
+    """A SLAM backend cannot be started: its library or vocabulary is missing or unreadable."""
+
+
+class TrajectoryError(SlamgymError, ValueError):
+    """A trajectory, or a file of one, is malformed or cannot be evaluated."""
+
+
+class OutputError(SlamgymError):
+    """Results cannot be written where they should go."""
+
+
+def unknown_word(kind: str, got: str, valid: Iterable[str]) -> str:
+    """Message for a word that is not one of `valid`, naming the closest one.
+
+    >>> unknown_word("slam backend", "orbslam", ["groundtruth", "orbslam3"])
+    "unknown slam backend 'orbslam'; did you mean 'orbslam3'? Valid: groundtruth, orbslam3"
+    """
+    valid = sorted(valid)
+    close = get_close_matches(got.lower(), valid, n=1, cutoff=0.4)
+    hint = f"; did you mean {close[0]!r}?" if close else "."
+    return f"unknown {kind} {got!r}{hint} Valid: {', '.join(valid)}"
