@@ -55,6 +55,8 @@ def resolve_camera(camera: str | PinholeCamera | Mapping[str, Any]) -> PinholeCa
         if camera not in CAMERAS:
             raise ConfigError(unknown_word("camera", camera, CAMERAS))
         return CAMERAS[camera]
+    if not isinstance(camera, Mapping):
+        raise ConfigError(f"camera: expected a preset's name, a PinholeCamera or a mapping, got {camera!r}")
     names = {field.name for field in fields(PinholeCamera)}
     for key in camera:
         if key not in names:

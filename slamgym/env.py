@@ -1,0 +1,215 @@
+"""`HomeRobot-v0`: a home robot with an RGB-D camera that drives through a house."""
+
+from functools import lru_cache
+from typing import Any, ClassVar
+
+import gymnasium as gym
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from slamgym import sensors
+from slamgym.agents.planner import Path, plan_path
+from slamgym.errors import ConfigError, unknown_word
+from slamgym.eval.drive import summarize_drive
+from slamgym.geometry import mast_camera_pose
+from slamgym.params import DriveParams, SlamParams, split_params
+from slamgym.render import Renderer
+from slamgym.robot import ROBOT_HEIGHT, ROBOT_RADIUS, DifferentialDrive, RobotState
+from slamgym.scenes.house import House
+from slamgym.scenes.light import bake_light
+from slamgym.scenes.occupancy import OccupancyGrid, free_space, occupancy_grid
+from slamgym.scenes.registry import check_scene, load_scene
+from slamgym.types import FloatArray, Summary
+
+Observation = dict[str, NDArray[Any]]
+Info = dict[str, Any]
+
+TOURS = ("one_way", "round_trip")
+WAYPOINTS = 5
+BLUR_SAMPLES = 5
+CLEARANCE_M = 0.05
+"""Kept free around the robot when paths are planned."""
+
+
+@lru_cache(maxsize=2)
+def load_house(scene: str, lighting: str) -> tuple[House, OccupancyGrid, NDArray[np.bool_]]:
+    """A house as the environment needs it: lit, with its grid and the free space for the robot's centre."""
+    house = load_scene(scene)
+    grid = occupancy_grid(house, ROBOT_HEIGHT)
+    free = free_space(grid, ROBOT_RADIUS + CLEARANCE_M)
+    return bake_light(house) if lighting == "baked" else house, grid, free
+
+
+class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
+    """A differential-drive robot follows a planned path; one step is one camera frame.
+
+    Keywords: the fields of `DriveParams`, and `render_mode`. `gym.make` also passes the fields of `SlamParams` when a
+    SLAM is in the loop; they are kept in `slam_params` for `SlamWrapper`.
+
+    Action: Box(2) in [-1, 1]: forward speed (below 0: reverse) and turn rate (above 0: left), scaled by the parameters.
+    Observation: `rgb` uint8 (H, W, 3), `depth` float32 (H, W) in metres along the optical axis with 0 = no measurement,
+    `waypoints` float32 (5, 2): the next points of the path, 0.2 m apart, in the robot's frame (x forward, y left).
+    Info: `stamp_ns`, `T_world_cam` (4, 4), `robot` (x, y, yaw), `speed_mps`, `yaw_rate_radps`, `progress_m`, `path_length_m`,
+    `distance_m`, `collision`.
+
+    The reset seed picks the path only; `reset(options={"tour": "round_trip"})` plans one that returns to its start.
+    Raises ConfigError for a bad parameter, SceneError and RenderError at the first reset.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 30}
+
+    def __init__(self, render_mode: str | None = None, **params: Any) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ConfigError(unknown_word("render_mode", str(render_mode), ["rgb_array"]))
+        self.params, self.slam_params = self._check(params)
+        check_scene(self.params.scene)
+        self.render_mode = render_mode
+        self.metadata = {**type(self).metadata, "render_fps": self.params.fps}
+        self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+        camera = self.params.camera
+        self.observation_space = spaces.Dict(
+            rgb=spaces.Box(0, 255, (camera.height, camera.width, 3), np.uint8),
+            depth=spaces.Box(0.0, np.inf, (camera.height, camera.width), np.float32),
+            waypoints=spaces.Box(-np.inf, np.inf, (WAYPOINTS, 2), np.float32),
+        )
+        self._renderer: Renderer | None = None
+        self._robot: DifferentialDrive | None = None
+
+    @staticmethod
+    def _check(params: dict[str, Any]) -> tuple[DriveParams, SlamParams | None]:
+        return DriveParams.checked(params), None
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, Info]:
+        super().reset(seed=seed)
+        tour = _tour(options)
+        path_seed, noise_seed = self.np_random.integers(2**63, size=2)
+        house, self.grid, free = load_house(self.params.scene, self.params.lighting)
+        self.path: Path = plan_path(
+            self.grid, free, self.params.path_length_m, np.random.default_rng(path_seed), tour=tour
+        )
+        self._noise_rng = np.random.default_rng(noise_seed)
+        if self._renderer is None or self._robot is None:
+            self._renderer = Renderer(house, self.params.camera, self.params.lighting)
+            self._robot = DifferentialDrive(house)
+        self._state = self._before = self._robot.reset(*self.path.start_pose)
+        self._step = 0
+        self._progress = 0.0
+        self._distance = 0.0
+        self._poses: list[FloatArray] = []
+        self._last = self._observe()
+        return self._last, self._info()
+
+    def step(self, action: NDArray[np.float32]) -> tuple[Observation, float, bool, bool, Info]:
+        if self._robot is None:
+            raise gym.error.ResetNeeded("call reset() before step()")
+        forward, turn = _checked_action(action)
+        self._before = self._state
+        self._state = self._robot.step(
+            forward * self.params.speed, turn * self.params.top_turn_rate, 1.0 / self.params.fps
+        )
+        self._step += 1
+        self._distance += float(np.hypot(self._state.x - self._before.x, self._state.y - self._before.y))
+        progress_before = self._progress
+        self._progress = self.path.project(np.array([self._state.x, self._state.y]), progress_before)
+        terminated = self._progress >= self.path.length_m - 0.05
+        self._last = self._observe()
+        return self._last, self._progress - progress_before, terminated, False, self._info()
+
+    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+        """The colour image of the last observation, uint8 (H, W, 3), when `render_mode` is "rgb_array"."""
+        return self._last["rgb"].copy() if self.render_mode == "rgb_array" else None
+
+    def close(self) -> None:
+        if self._renderer is not None:
+            self._renderer.close()
+        if self._robot is not None:
+            self._robot.close()
+        self._renderer = self._robot = None
+
+    def summarize_drive(self) -> Summary:
+        """What was really driven since the reset, see `slamgym.eval.drive.summarize_drive`."""
+        return summarize_drive(
+            np.array([self._stamp_ns(step) for step in range(len(self._poses))]),
+            np.array(self._poses),
+            self.path.xy,
+            self.params.speed,
+        )
+
+    def _observe(self) -> Observation:
+        """Render at the robot's pose, add the sensor's noise, and remember the true pose of the camera."""
+        self._poses.append(self._camera_pose(1.0))
+        rgb, depth = self._render_blurred()
+        if self.params.rgb_noise > 0:
+            rgb = sensors.rgb_noise(rgb, self.params.rgb_noise, self._noise_rng)
+        if self.params.depth_noise == "icl_nuim":
+            depth = sensors.icl_nuim_depth_noise(depth, self._noise_rng)
+        state = self._state
+        waypoints = self.path.waypoints(self._progress, state.x, state.y, state.yaw)
+        return {"rgb": rgb, "depth": depth, "waypoints": waypoints}
+
+    def _render_blurred(self) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        """The exposure ends at the frame's stamp; depth is measured at its end."""
+        assert self._renderer is not None
+        rgb, depth = self._renderer.render(self._camera_pose(1.0))
+        if self.params.motion_blur == 0 or self._step == 0:
+            return rgb, depth
+        total = rgb.astype(np.float32)
+        for earlier in np.linspace(0.0, self.params.motion_blur, BLUR_SAMPLES)[1:]:
+            total += self._renderer.render(self._camera_pose(1.0 - earlier))[0]
+        return np.rint(total / BLUR_SAMPLES).astype(np.uint8), depth
+
+    def _camera_pose(self, fraction: float) -> FloatArray:
+        """T_world_cam at a fraction of the way from the last step's state (0) to this one's (1)."""
+        before, now = self._before, self._state
+        x, y, yaw = (
+            (1 - fraction) * a + fraction * b
+            for a, b in ((before.x, now.x), (before.y, now.y), (before.yaw, now.yaw))
+        )
+        return mast_camera_pose(x, y, yaw, self.params.camera_height)
+
+    def _stamp_ns(self, step: int) -> int:
+        return round(step * 1e9 / self.params.fps)
+
+    def _info(self) -> Info:
+        state = self._state
+        return {
+            "stamp_ns": self._stamp_ns(self._step),
+            "T_world_cam": self._poses[-1].copy(),
+            "robot": np.array([state.x, state.y, state.yaw]),
+            "speed_mps": state.speed,
+            "yaw_rate_radps": state.yaw_rate,
+            "progress_m": self._progress,
+            "path_length_m": self.path.length_m,
+            "distance_m": self._distance,
+            "collision": state.collided,
+        }
+
+
+class HomeRobotForSlamEnv(HomeRobotEnv):
+    """The same robot; it also takes the fields of `SlamParams` and keeps them for `SlamWrapper`.
+
+    Keywords of `gym.make` reach only this constructor, not the wrappers around it.
+    """
+
+    @staticmethod
+    def _check(params: dict[str, Any]) -> tuple[DriveParams, SlamParams | None]:
+        return split_params(params)
+
+
+def _tour(options: dict[str, Any] | None) -> str:
+    for key in options or {}:
+        if key != "tour":
+            raise ConfigError(unknown_word("reset option", str(key), ["tour"]))
+    tour = (options or {}).get("tour", "one_way")
+    if tour not in TOURS:
+        raise ConfigError(unknown_word("tour", str(tour), TOURS))
+    return str(tour)
+
+
+def _checked_action(action: NDArray[np.float32]) -> tuple[float, float]:
+    values = np.asarray(action, dtype=np.float64)
+    if values.shape != (2,) or not np.isfinite(values).all():
+        raise ConfigError(f"action: expected two finite numbers, forward and turn in [-1, 1], got {action!r}")
+    forward, turn = np.clip(values, -1.0, 1.0)
+    return float(forward), float(turn)

@@ -1,0 +1,100 @@
+"""The parameters of the environments: every keyword of `gym.make`, checked in one place and recorded with results."""
+
+from collections.abc import Mapping
+from typing import Any, Literal, Self, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic_core import ErrorDetails
+
+from slamgym.camera import CAMERAS, PinholeCamera, resolve_camera
+from slamgym.errors import ConfigError, unknown_word
+from slamgym.slam.backend import BACKENDS
+
+RADIUS_OF_TURN = 0.25
+"""metres; `turn_rate=None` turns at speed / RADIUS_OF_TURN, so that another speed retimes the same path."""
+
+
+class Params(BaseModel):
+    """Frozen parameters that refuse unknown names; `checked` raises ConfigError in one line."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, arbitrary_types_allowed=True)
+
+    @classmethod
+    def checked(cls, values: Mapping[str, Any]) -> Self:
+        """The parameters `values`, defaults filled in; raises ConfigError."""
+        try:
+            return cls.model_validate(dict(values))
+        except ValidationError as error:
+            raise ConfigError("; ".join(cls._explain(details) for details in error.errors())) from None
+
+    @classmethod
+    def _explain(cls, details: ErrorDetails) -> str:
+        name = str(details["loc"][0]) if details["loc"] else cls.__name__
+        if details["type"] == "extra_forbidden":
+            return unknown_word("parameter", name, cls.model_fields)
+        if details["type"] == "literal_error" and isinstance(details["input"], str):
+            return unknown_word(name, details["input"], get_args(cls.model_fields[name].annotation))
+        if details["type"] == "value_error":
+            return str(details["ctx"]["error"])
+        return f"{name}: {details['msg'].replace('Input should be', 'the value should be')}, got {details['input']!r}"
+
+
+class DriveParams(Params):
+    """The house, the drive through it and the camera."""
+
+    scene: str = Field("procedural", description="house: 'procedural' or 'procedural:SEED'")
+    speed: float = Field(0.2, gt=0, le=10, description="top speed, m/s")
+    turn_rate: float | None = Field(
+        None, gt=0, le=50, description=f"top turn rate, rad/s; None: speed / {RADIUS_OF_TURN} m"
+    )
+    fps: float = Field(30.0, gt=0, le=1000, description="frames a simulated second; one step is one frame")
+    path_length_m: float = Field(10.0, ge=0.5, le=10_000, description="length of the planned path, m")
+    camera: PinholeCamera = Field(CAMERAS["default"], description="a preset's name, or a PinholeCamera")
+    camera_height: float = Field(0.83, ge=0.1, le=2.0, description="height of the camera above the floor, m")
+    depth_noise: Literal["none", "icl_nuim"] = Field("none", description="noise of the depth sensor")
+    rgb_noise: float = Field(0.0, ge=0, le=128, description="standard deviation of the image noise, grey levels")
+    motion_blur: float = Field(0.0, ge=0, le=1, description="exposure time as a share of the time between frames")
+    lighting: Literal["baked", "flat"] = Field("baked", description="baked light, or the bare textures")
+
+    @field_validator("camera", mode="before")
+    @classmethod
+    def _resolve_camera(cls, camera: Any) -> PinholeCamera:
+        return resolve_camera(camera)
+
+    @property
+    def top_turn_rate(self) -> float:
+        """Turn rate in rad/s that an action of 1 commands."""
+        return self.speed / RADIUS_OF_TURN if self.turn_rate is None else self.turn_rate
+
+
+class SlamParams(Params):
+    """The SLAM in the loop, how it is fed, and what its tracking is worth."""
+
+    slam: str = Field("orbslam3", description="SLAM backend")
+    slam_sync: Literal["lockstep", "free"] = Field(
+        "lockstep", description="lockstep: wait after each frame until the SLAM idles; free: feed at full speed"
+    )
+    stride: int = Field(0, ge=0, description="frames left out between two that the SLAM sees")
+    loop_closure: bool | None = Field(None, description="loop closing on or off; None: the backend's default")
+    slam_options: dict[str, Any] = Field(default_factory=dict, description="options of the backend")
+    slam_timeout_s: float = Field(20.0, gt=0, le=3600, description="longest time that the SLAM may take, s")
+    reward: Literal["progress", "tracking"] = Field(
+        "progress", description="metres of progress, or that minus 1 for each fed frame that is not tracked"
+    )
+
+    @field_validator("slam")
+    @classmethod
+    def _known_backend(cls, slam: str) -> str:
+        if slam not in BACKENDS:
+            raise ConfigError(unknown_word("slam backend", slam, BACKENDS))
+        return slam
+
+
+def split_params(values: Mapping[str, Any]) -> tuple[DriveParams, SlamParams]:
+    """The keywords of `gym.make("HomeRobotSLAM-v0", ...)`, sorted into the two groups; raises ConfigError."""
+    drive_names, slam_names = DriveParams.model_fields.keys(), SlamParams.model_fields.keys()
+    for name in values:
+        if name not in drive_names | slam_names:
+            raise ConfigError(unknown_word("parameter", name, drive_names | slam_names))
+    drive = DriveParams.checked({k: v for k, v in values.items() if k in drive_names})
+    return drive, SlamParams.checked({k: v for k, v in values.items() if k in slam_names})

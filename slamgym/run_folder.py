@@ -1,0 +1,125 @@
+"""A run folder: everything about one episode, in files that other tools read, complete or not there at all.
+
+    config.yaml      all parameters, as they were resolved
+    episode.json     the results, the keys of `info["episode_slam"]` at the top level
+    groundtruth.txt  true poses of the camera's optical frame at every rendered frame, TUM format
+    estimate.txt     the SLAM's final poses in the evaluated map, TUM format
+    frames.csv       one row a rendered frame: motion of the robot, and the SLAM's answer where the frame was fed
+    map.png          seen from above: grid, planned and true path, aligned estimate, losses
+    slam.log         the last lines that the SLAM wrote
+"""
+
+import json
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import yaml
+
+from slamgym.errors import OutputError
+from slamgym.eval.plots import plot_map
+from slamgym.eval.robustness import evaluated_map
+from slamgym.eval.trajectory import Trajectory, write_tum
+from slamgym.rollout import Episode
+from slamgym.types import SlamRecord, TrackingState
+
+INTERRUPTED_SUFFIX = ".interrupted"
+
+
+def check_free(folder: Path) -> None:
+    """Raise OutputError unless a run folder can be made at `folder`; to be called before hours of work."""
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise OutputError(f"output folder: expected a new or empty folder, got {folder}; remove it or name another")
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{folder.name}-", dir=folder.parent):
+            pass
+    except OSError as error:
+        raise OutputError(
+            f"output folder: cannot write in {folder.parent} ({error.strerror}); name another folder"
+        ) from None
+
+
+def write_run(episode: Episode, folder: Path) -> Path:
+    """Write the run folder in one piece and return it; an interrupted episode's gets the suffix ".interrupted".
+
+    Raises OutputError when the folder exists and is not empty or cannot be written.
+    """
+    if episode.interrupted:
+        folder = folder.with_name(folder.name + INTERRUPTED_SUFFIX)
+    check_free(folder)
+    try:
+        draft = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+        try:
+            _write_files(episode, draft)
+            draft.chmod(0o755)  # mkdtemp's folders are private
+            draft.rename(folder)
+        except BaseException:
+            shutil.rmtree(draft, ignore_errors=True)
+            raise
+    except OSError as error:
+        raise OutputError(f"output folder: writing {folder} failed ({error.strerror}); free space or name another") from None
+    return folder
+
+
+def frames_table(episode: Episode) -> pd.DataFrame:
+    """One row a rendered frame; the `slam_*` columns are empty where the frame was not fed."""
+    table = pd.DataFrame(
+        {
+            "stamp_ns": episode.stamps_ns,
+            "x_m": episode.T_world_cam[:, 0, 3],
+            "y_m": episode.T_world_cam[:, 1, 3],
+            "speed_mps": [step.speed_mps for step in episode.steps],
+            "yaw_rate_radps": [step.yaw_rate_radps for step in episode.steps],
+            "progress_m": [step.progress_m for step in episode.steps],
+            "collision": [step.collision for step in episode.steps],
+        }
+    )
+    if episode.slam is None:
+        return table
+    return table.merge(_slam_table(episode.slam), on="stamp_ns", how="left")
+
+
+def final_estimate(record: SlamRecord) -> Trajectory:
+    """The SLAM's final poses (T_map_cam) in the evaluated map."""
+    chosen = record.final.map_id == evaluated_map(record)
+    return Trajectory(record.final.stamps_ns[chosen], record.final.T_map_cam[chosen])
+
+
+def _slam_table(record: SlamRecord) -> pd.DataFrame:
+    position = record.T_map_cam[:, :3, 3]
+    return pd.DataFrame(
+        {
+            "stamp_ns": record.stamps_ns,
+            "slam_state": [TrackingState(state).label for state in record.states],
+            "slam_map_id": pd.array(record.map_id, dtype="Int64"),
+            "slam_tracked_points": pd.array(record.tracked_points, dtype="Int64"),
+            "slam_event": list(record.events),
+            "slam_x_m": position[:, 0],
+            "slam_y_m": position[:, 1],
+            "slam_z_m": position[:, 2],
+        }
+    )
+
+
+def _without_nan(value: Any) -> Any:
+    """JSON has no NaN: null stands for "not measured"."""
+    if isinstance(value, dict):
+        return {key: _without_nan(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_without_nan(item) for item in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def _write_files(episode: Episode, folder: Path) -> None:
+    (folder / "config.yaml").write_text(yaml.safe_dump(episode.config, sort_keys=False))
+    (folder / "episode.json").write_text(json.dumps(_without_nan(episode.summary), indent=2, allow_nan=False) + "\n")
+    write_tum(folder / "groundtruth.txt", Trajectory(episode.stamps_ns, episode.T_world_cam))
+    frames_table(episode).to_csv(folder / "frames.csv", index=False, float_format="%.9g")
+    (folder / "slam.log").write_text(episode.slam_log)
+    if episode.slam is not None:
+        write_tum(folder / "estimate.txt", final_estimate(episode.slam))
+    plot_map(folder / "map.png", episode.grid, episode.path_xy, episode.T_world_cam, episode.slam, episode.summary)

@@ -1,0 +1,109 @@
+import numpy as np
+import pytest
+
+from slamgym.eval.robustness import (
+    completion,
+    estimate_by_frame,
+    evaluated_map,
+    final_by_frame,
+    find_losses,
+    status,
+    success,
+)
+from slamgym.types import SlamEvent
+
+
+def runs(record):
+    return [(loss.start_frame, loss.end_frame, loss.outcome) for loss in find_losses(record)]
+
+
+@pytest.mark.parametrize(
+    ("online", "events", "expected"),
+    [
+        ("", {}, []),
+        (".....", {}, []),
+        ("..000", {2: SlamEvent.INITIALIZED}, []),
+        ("0xxxx", {1: SlamEvent.LOST}, [(1, 4, "never")]),
+        (".000x", {}, [(4, 4, "never")]),
+        ("00x00", {3: SlamEvent.RELOCALIZED}, [(2, 2, "relocalized")]),
+        ("00xx.11", {5: SlamEvent.NEW_MAP}, [(2, 4, "new_map")]),
+        ("00xx.11", {5: SlamEvent.MAP_RESET}, [(2, 4, "map_reset")]),
+        ("00x1", {3: SlamEvent.MAPS_MERGED}, [(2, 2, "relocalized")]),
+        ("0x0x1", {2: SlamEvent.RELOCALIZED, 4: SlamEvent.NEW_MAP}, [(1, 1, "relocalized"), (3, 3, "new_map")]),
+        ("00x00", {3: SlamEvent.LOOP_CLOSED}, [(2, 2, "relocalized")]),
+        ("00.11", {3: SlamEvent.INITIALIZED}, [(2, 2, "new_map")]),
+    ],
+)
+def test_losses_and_their_outcomes(make_record, online, events, expected):
+    assert runs(make_record(online, events=events)) == expected
+
+
+def test_a_loss_lasts_until_the_first_tracked_frame_and_measures_the_true_motion(make_record):
+    (loss,) = find_losses(make_record(".00xx00"))
+    assert (loss.start_s, loss.duration_s) == pytest.approx((0.3, 0.2))
+    assert loss.distance_m == pytest.approx(0.2, abs=1e-9)
+    assert loss.rotation_deg == pytest.approx(np.rad2deg(0.1), abs=1e-6)
+
+
+def test_a_loss_that_never_ends_lasts_until_the_last_fed_frame(make_record):
+    (loss,) = find_losses(make_record("00xxx"))
+    assert (loss.duration_s, loss.distance_m) == pytest.approx((0.2, 0.2))
+    (loss,) = find_losses(make_record("0000x"))
+    assert (loss.duration_s, loss.distance_m, loss.rotation_deg) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("online", "outcome", "expected", "succeeds"),
+    [
+        ("", "", "init_failed", False),
+        ("...", "", "init_failed", False),
+        ("..000", "", "ok", True),
+        ("00x00", "", "ok", False),
+        ("000xx", "", "lost", False),
+        ("00000", "crashed", "crashed", False),
+        ("...", "timeout", "timeout", False),
+    ],
+)
+def test_status_and_success(make_record, online, outcome, expected, succeeds):
+    record = make_record(online, outcome=outcome)
+    assert status(record) == expected
+    assert success(record) is succeeds
+
+
+@pytest.mark.parametrize(
+    ("online", "final", "expected_map", "expected_completion"),
+    [
+        ("", "", -1, 0.0),
+        ("....", "....", -1, 0.0),
+        ("..00000000", None, 0, 0.8),
+        ("000x1111xx", None, 1, 0.4),
+        ("000x111xxx", None, 0, 0.3),  # a tie: the first
+        ("111x000xxx", None, 1, 0.3),
+        ("000x1111xx", "0000000000", 0, 0.7),  # merged; final poses of lost frames are guesses
+        ("000xxxxx11", "0000000011", 0, 0.3),
+        ("0000000000", "....000000", 0, 0.6),  # the SLAM took the first frames back
+        ("0000", "....", -1, 0.0),
+    ],
+)
+def test_evaluated_map_and_completion(make_record, online, final, expected_map, expected_completion):
+    record = make_record(online, final)
+    assert evaluated_map(record) == expected_map
+    assert completion(record) == pytest.approx(expected_completion)
+
+
+def test_without_a_final_trajectory_a_crash_is_judged_by_the_emitted_poses(make_record):
+    record = make_record("000x1111xx", final="..........", outcome="crashed")
+    assert evaluated_map(record) == 1
+    assert completion(record) == pytest.approx(0.4)
+    T, maps = estimate_by_frame(record)
+    assert maps.tolist() == [0, 0, 0, -1, 1, 1, 1, 1, -1, -1]
+    assert np.isfinite(T[maps >= 0]).all()
+
+
+def test_final_poses_are_matched_by_exact_stamp_and_guesses_left_out(make_record):
+    record = make_record("00x00", final="000.0")
+    record.final.stamps_ns[1] += 1
+    T, maps = final_by_frame(record)
+    assert maps.tolist() == [0, -1, -1, -1, 0]
+    np.testing.assert_array_equal(np.isfinite(T).all(axis=(1, 2)), maps >= 0)
+    np.testing.assert_allclose(T[4], record.final.T_map_cam[3])
