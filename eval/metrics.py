@@ -58,7 +58,8 @@ def ate(ref_T: FloatArray, est_T: FloatArray, alignment: str = "rigid") -> Error
     """
     if alignment not in ALIGNMENTS:
         raise TrajectoryError(unknown_word("alignment", alignment, ALIGNMENTS))
-    _check_pair(ref_T, est_T)
+    _check_shapes(ref_T, est_T)
+    _check_finite(ref_T, est_T)
     ref, est = ref_T[:, :3, 3], est_T[:, :3, 3]
     if alignment == "rigid":
         T_ref_est = align_rigid(est, ref)
@@ -140,11 +141,12 @@ class _PosePairs:
 
     @classmethod
     def of(cls, ref_T: FloatArray, est_T: FloatArray, tracked: BoolArray | None, map_ids: IntArray | None) -> Self:
+        _check_shapes(ref_T, est_T)
         tracked = np.ones(len(ref_T), dtype=np.bool_) if tracked is None else tracked
         map_ids = np.zeros(len(ref_T), dtype=np.int64) if map_ids is None else map_ids
         map_ids = np.where(tracked, map_ids, -1)
         est_T = np.where((map_ids >= 0)[:, None, None], est_T, np.eye(4))
-        _check_pair(ref_T, est_T)
+        _check_finite(ref_T, est_T)
         W = np.tile(np.eye(4), (len(ref_T), 1, 1))
         W[:, :3, :3] = ref_T[:, :3, :3] @ est_T[:, :3, :3].swapaxes(1, 2)
         return cls(
@@ -176,8 +178,11 @@ def _norm_sq(vectors: FloatArray) -> FloatArray:
     return cast(FloatArray, np.einsum("kn,kn->n", vectors, vectors))
 
 
-def _check_pair(ref_T: FloatArray, est_T: FloatArray) -> None:
+def _check_shapes(ref_T: FloatArray, est_T: FloatArray) -> None:
     if ref_T.shape != est_T.shape or ref_T.shape[1:] != (4, 4):
         raise TrajectoryError(f"expected poses (N, 4, 4) in pairs, got shapes {ref_T.shape} and {est_T.shape}")
+
+
+def _check_finite(ref_T: FloatArray, est_T: FloatArray) -> None:
     if not (np.isfinite(ref_T).all() and np.isfinite(est_T).all()):
         raise TrajectoryError("expected finite poses, got NaN or infinity: leave them out, or mask them as not tracked")

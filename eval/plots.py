@@ -1,5 +1,6 @@
 """A picture of one episode, seen from above."""
 
+from math import isnan
 from pathlib import Path
 from typing import Protocol
 
@@ -77,14 +78,14 @@ def _draw_grid(axes: Axes, grid: TopView) -> None:
 def _draw_estimate(axes: Axes, slam: SlamRecord) -> None:
     T, maps = estimate_by_frame(slam)
     best = most_frequent_map(maps)
-    others = [map_id for map_id in np.unique(maps[maps >= 0]) if map_id != best]
-    for i, map_id in enumerate(others):
-        label = "other maps of the SLAM" if i == 0 else None
-        xy = _aligned_xy(slam.T_world_cam, T, maps == map_id)
-        axes.plot(*xy.T, color=OTHER_MAPS[i % len(OTHER_MAPS)], linestyle="--", linewidth=1.8, label=label)
     if best >= 0:
         xy = _aligned_xy(slam.T_world_cam, T, maps == best)
-        axes.plot(*xy.T, color=ESTIMATE, linewidth=1.4, label="estimate, evaluated map")
+        axes.plot(*xy.T, color=ESTIMATE, linewidth=1.8, label="estimate, evaluated map")
+    others = [map_id for map_id in np.unique(maps[maps >= 0]) if map_id != best]
+    for i, map_id in enumerate(others):
+        label = "estimate, other maps" if i == 0 else None
+        xy = _aligned_xy(slam.T_world_cam, T, maps == map_id)
+        axes.plot(*xy.T, color=OTHER_MAPS[i % len(OTHER_MAPS)], linestyle="--", linewidth=1.8, label=label)
 
 
 def _aligned_xy(T_world_cam: FloatArray, T_map_cam: FloatArray, frames: BoolArray) -> FloatArray:
@@ -101,18 +102,19 @@ def _draw_losses(axes: Axes, slam: SlamRecord) -> None:
     xy = slam.T_world_cam[:, :2, 3]
     for i, loss in enumerate(find_losses(slam)):
         lost = xy[loss.start_frame : loss.end_frame + 2]
-        axes.plot(
-            *lost.T, color=LOST, linewidth=5.0, alpha=0.6, solid_capstyle="butt", label="lost" if i == 0 else None
-        )
-        axes.plot(*lost[0], color=LOST, marker="X", markersize=9, markeredgecolor="white", linestyle="none")
+        # A broad band below the true path, and its start above all: a loss may be shorter than the line is wide.
+        axes.plot(*lost.T, color=LOST, linewidth=7.0, solid_capstyle="butt", zorder=1.5)
+        label = "lost, from the cross on" if i == 0 else None
+        axes.plot(*lost[0], color=LOST, marker="X", markersize=9, markeredgecolor="white", zorder=4, label=label)
 
 
 def _draw_ends(axes: Axes, true_xy: FloatArray) -> None:
     for label, marker, xy in (("start", "o", true_xy[0]), ("end", "s", true_xy[-1])):
-        axes.plot(*xy, marker=marker, label=label, markersize=9, color=TRUTH, markerfacecolor="white", linestyle="none")
+        axes.plot(*xy, marker=marker, label=label, markersize=12, color=TRUTH, markerfacecolor="none", linestyle="none")
 
 
 def _title(summary: Summary) -> str:
     if "status" not in summary:
         return "no SLAM"
-    return f"{summary['status']}, ATE {summary['ate_rmse_m']:.3f} m, completion {summary['completion']:.0%}"
+    ate = "no ATE" if isnan(summary["ate_rmse_m"]) else f"ATE {summary['ate_rmse_m']:.3f} m"
+    return f"{summary['status']}, {ate}, completion {summary['completion']:.0%}"
