@@ -7,7 +7,7 @@ STAMP := $(VENV)/.installed
 .PHONY: demo test test-long check bench format setup clean system-libraries
 
 demo: setup
-	$(BIN)/python examples/three_speeds.py
+	$(BIN)/python examples/speed_sweep.py
 
 test: setup
 	$(BIN)/python -m pytest -m "not long" $(PYTEST_ARGS)
@@ -26,7 +26,7 @@ format: setup
 	$(BIN)/ruff format .
 
 bench: setup
-	$(BIN)/python -m pytest tests/benchmarks/bench_*.py -s -q
+	for bench in tests/benchmarks/bench_*.py; do $(BIN)/python $$bench || exit 1; done
 
 setup: system-libraries $(STAMP)
 

@@ -4,22 +4,21 @@ from dataclasses import dataclass, field
 from typing import cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from slamgym.types import FloatArray
 
 SPACING_M = 0.05
 WAYPOINT_COUNT = 5
 WAYPOINT_SPACING_M = 0.2
+AHEAD_M: FloatArray = WAYPOINT_SPACING_M * np.arange(1.0, WAYPOINT_COUNT + 1)
 PROJECTION_WINDOW_M = 0.5
 AHEAD_PENALTY = 0.1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Path:
-    """A polyline. xy: world points (P, 2), metres, P >= 2, no two neighbours equal. arc_m: the distance (P,) along the
-    path of each of them.
-    """
+    """A polyline. xy: world points (P, 2), metres, P >= 2; arc_m: the distances (P,) along the path to each of them."""
 
     xy: FloatArray
     arc_m: FloatArray = field(init=False, repr=False)
@@ -31,7 +30,7 @@ class Path:
     def length_m(self) -> float:
         return float(self.arc_m[-1])
 
-    def point_at(self, s: ArrayLike) -> FloatArray:
+    def point_at(self, s: float | FloatArray) -> FloatArray:
         """Points (..., 2) at the distances `s` (...) along the path, clamped to its ends."""
         return np.stack([np.interp(s, self.arc_m, self.xy[:, axis]) for axis in (0, 1)], axis=-1)
 
@@ -41,7 +40,7 @@ class Path:
         dx, dy = self.xy[k + 1] - self.xy[k]
         return float(np.arctan2(dy, dx))
 
-    def project(self, xy: ArrayLike, s_hint: float) -> float:
+    def project(self, xy: tuple[float, float] | FloatArray, s_hint: float) -> float:
         """Distance along the path of the point nearest to `xy` (2,), at `s_hint` or up to 0.5 m ahead of it.
 
         The last progress is the hint: so a path that crosses or retraces itself does not make progress jump, and
@@ -51,7 +50,7 @@ class Path:
         last = int(np.searchsorted(self.arc_m, s_hint + PROJECTION_WINDOW_M)) + 1
         a, b = self.xy[first:last][:-1], self.xy[first:last][1:]
         length = np.diff(self.arc_m[first:last])
-        t = np.clip(np.sum((np.asarray(xy) - a) * (b - a), axis=1) / length**2, 0.0, 1.0)
+        t = np.clip(np.sum((xy - a) * (b - a), axis=1) / np.maximum(length**2, 1e-12), 0.0, 1.0)
         s = np.maximum(self.arc_m[first:last][:-1] + t * length, min(s_hint, self.length_m))
         distance = np.linalg.norm(self.point_at(s) - xy, axis=1)
         # Where the path lies twice in the same place, the nearer in progress wins.
@@ -61,7 +60,7 @@ class Path:
         """The next path points (5, 2), float32, 0.2 m apart along the path from distance `s` on, clamped to its end,
         in the frame of a robot at (x, y), metres, turned by `yaw`, radians: x forward, y left.
         """
-        ahead = self.point_at(s + WAYPOINT_SPACING_M * np.arange(1, WAYPOINT_COUNT + 1)) - (x, y)
+        ahead = self.point_at(s + AHEAD_M) - (x, y)
         R_world_robot = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
         return cast("NDArray[np.float32]", (ahead @ R_world_robot).astype(np.float32))
 

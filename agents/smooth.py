@@ -1,7 +1,6 @@
 """Smoothing of a planned route that keeps it in free space."""
 
 from collections.abc import Callable, Sequence
-from typing import cast
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, minimum_filter1d, uniform_filter1d
@@ -39,7 +38,7 @@ def _gaussian(xy: FloatArray, sigma: float) -> FloatArray:
     padded = np.pad(xy, ((margin, margin), (0, 0)), mode="reflect", reflect_type="odd")
     smoothed = gaussian_filter1d(padded, sigma, axis=0)[margin : margin + len(xy)]
     smoothed[[0, -1]] = xy[[0, -1]]
-    return cast(FloatArray, smoothed)
+    return smoothed
 
 
 def _blend(levels: FloatArray, level: FloatArray) -> FloatArray:
@@ -48,4 +47,4 @@ def _blend(levels: FloatArray, level: FloatArray) -> FloatArray:
     upper = np.ceil(level).astype(np.int64)
     point = np.arange(len(level))
     weight = (level - lower)[:, None]
-    return cast(FloatArray, (1 - weight) * levels[lower, point] + weight * levels[upper, point])
+    return (1 - weight) * levels[lower, point] + weight * levels[upper, point]

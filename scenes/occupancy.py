@@ -40,7 +40,7 @@ class OccupancyGrid:
     def centre_of(self, cells: ArrayLike) -> FloatArray:
         """World positions (..., 2), metres, of the centres of cells (..., 2) given as row and column."""
         cell_xy = np.asarray(cells, dtype=np.float64)[..., ::-1]
-        return cast(FloatArray, self.origin_xy + (cell_xy + 0.5) * self.resolution_m)
+        return self.origin_xy + (cell_xy + 0.5) * self.resolution_m
 
 
 def occupancy_grid(house: House, robot_height: float, resolution_m: float = 0.05) -> OccupancyGrid:
@@ -98,25 +98,28 @@ def _clip(triangles: FloatArray, z_min: float, z_max: float) -> FloatArray:
     vertices = triangles[near].reshape(-1, 3)
     faces = np.arange(len(vertices)).reshape(-1, 3)
     for normal_z, z in ((1.0, z_min), (-1.0, z_max)):
-        vertices, faces, _ = slice_faces_plane(vertices, faces, (0.0, 0.0, normal_z), (0.0, 0.0, z))
+        vertices, faces, _ = slice_faces_plane(  # type: ignore[no-untyped-call]
+            vertices, faces, (0.0, 0.0, normal_z), (0.0, 0.0, z)
+        )
     return cast(FloatArray, vertices[faces])
 
 
 def _extent(floor: FloatArray, resolution_m: float, name: str) -> tuple[FloatArray, tuple[int, int]]:
-    """Origin and shape of a grid over the floor, with a margin of one cell that stays occupied."""
+    """Origin and shape of a grid over the floor, with a margin of a cell or more that stays occupied."""
     if len(floor) == 0:
         raise SceneError(
             f"no floor in scene {name!r}: expected an upward-facing surface within {FLOOR_TOLERANCE_M} m of z = 0; "
             "move the scene so that its floor is there"
         )
     lower, upper = floor[..., :2].min(axis=(0, 1)), floor[..., :2].max(axis=(0, 1))
-    nx, ny = (int(n) for n in np.ceil((upper - lower) / resolution_m) + 2)
+    nx, ny = (int(n) for n in np.ceil((upper - lower) / resolution_m) + 3)
     if nx * ny > MAX_CELLS:
         raise SceneError(
             f"scene {name!r} is too large: expected at most {MAX_CELLS} cells of {resolution_m} m, got a floor of "
             f"{upper[0] - lower[0]:.0f} x {upper[1] - lower[1]:.0f}; check that it is in metres"
         )
-    return lower - resolution_m, (ny, nx)
+    # Half a cell off, coordinates that are multiples of the resolution do not lie on the border of two cells.
+    return lower - 1.5 * resolution_m, (ny, nx)
 
 
 def _rasterise(triangles: FloatArray, origin_xy: FloatArray, shape: tuple[int, int], resolution_m: float) -> BoolArray:

@@ -26,7 +26,7 @@ PATTERNS: dict[int, tuple[tuple[int, int, int], ...]] = {
 }
 
 
-def face_normals(vertices: NDArray[np.float32], faces: NDArray[np.int32]) -> FloatArray:
+def face_normals(vertices: NDArray[np.float32], faces: NDArray[np.integer]) -> FloatArray:
     """Normals (F, 3) of counter-clockwise faces, as long as twice the face's area."""
     a, b, c = (vertices[faces[:, k]].astype(np.float64) for k in range(3))
     return np.cross(b - a, c - a)

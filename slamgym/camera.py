@@ -13,7 +13,10 @@ from slamgym.types import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class PinholeCamera:
-    """Image size in pixels; focal lengths and principal point in pixels, the centre of the top left pixel at (0, 0)."""
+    """Image size in pixels; focal lengths and principal point in pixels, the centre of the top left pixel at (0, 0).
+
+    distortion: OpenCV's k1, k2, p1, p2 and, if given, k3 of a real lens; rendered images have none.
+    """
 
     width: int
     height: int
@@ -21,6 +24,7 @@ class PinholeCamera:
     fy: float
     cx: float
     cy: float
+    distortion: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if self.width < 1 or self.height < 1:
@@ -29,13 +33,15 @@ class PinholeCamera:
             raise ConfigError(f"camera: expected finite focal lengths above 0, got fx={self.fx}, fy={self.fy}")
         if not (isfinite(self.cx) and isfinite(self.cy)):
             raise ConfigError(f"camera: expected a finite principal point, got cx={self.cx}, cy={self.cy}")
+        if len(self.distortion) not in (0, 4, 5) or not all(map(isfinite, self.distortion)):
+            raise ConfigError(f"camera: expected no distortion, or finite k1 k2 p1 p2 [k3], got {self.distortion}")
 
     @property
     def K(self) -> FloatArray:
         """Intrinsic matrix (3, 3)."""
         return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
 
-    def as_dict(self) -> dict[str, float]:
+    def as_dict(self) -> dict[str, Any]:
         return asdict(self)
 
 
@@ -61,6 +67,6 @@ def resolve_camera(camera: str | PinholeCamera | Mapping[str, Any]) -> PinholeCa
     for key in camera:
         if key not in names:
             raise ConfigError(unknown_word("camera key", str(key), names))
-    if missing := sorted(names - set(camera)):
+    if missing := sorted(names - {"distortion"} - set(camera)):
         raise ConfigError(f"camera: expected the keys {', '.join(sorted(names))}; missing: {', '.join(missing)}")
-    return PinholeCamera(**camera)
+    return PinholeCamera(**{**camera, "distortion": tuple(camera.get("distortion", ()))})

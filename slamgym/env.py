@@ -9,7 +9,8 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from slamgym import sensors
-from slamgym.agents.planner import Path, plan_path
+from slamgym.agents.path import WAYPOINT_COUNT, Path
+from slamgym.agents.planner import plan_path
 from slamgym.errors import ConfigError, unknown_word
 from slamgym.eval.drive import summarize_drive
 from slamgym.geometry import mast_camera_pose
@@ -26,7 +27,6 @@ Observation = dict[str, NDArray[Any]]
 Info = dict[str, Any]
 
 TOURS = ("one_way", "round_trip")
-WAYPOINTS = 5
 BLUR_SAMPLES = 5
 CLEARANCE_M = 0.05
 """Kept free around the robot when paths are planned."""
@@ -71,7 +71,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         self.observation_space = spaces.Dict(
             rgb=spaces.Box(0, 255, (camera.height, camera.width, 3), np.uint8),
             depth=spaces.Box(0.0, np.inf, (camera.height, camera.width), np.float32),
-            waypoints=spaces.Box(-np.inf, np.inf, (WAYPOINTS, 2), np.float32),
+            waypoints=spaces.Box(-np.inf, np.inf, (WAYPOINT_COUNT, 2), np.float32),
         )
         self._renderer: Renderer | None = None
         self._robot: DifferentialDrive | None = None
@@ -92,7 +92,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         if self._renderer is None or self._robot is None:
             self._renderer = Renderer(house, self.params.camera, self.params.lighting)
             self._robot = DifferentialDrive(house)
-        self._state = self._before = self._robot.reset(*self.path.start_pose)
+        self._state = self._before = self._robot.reset(*self.path.xy[0], self.path.heading_at(0.0))
         self._step = 0
         self._progress = 0.0
         self._distance = 0.0

@@ -8,6 +8,7 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from textwrap import shorten
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from slamgym.errors import RenderError
 from slamgym.types import FloatArray
 
 NO_EGL = (
-    "cannot render: expected a working EGL with OpenGL 4.1, got {error!r}; on Debian or Ubuntu: "
+    "cannot render: expected a working EGL with OpenGL 4.1, got: {error}; on Debian or Ubuntu: "
     "apt-get install libegl1 libgl1 libopengl0 libgl1-mesa-dri libegl-mesa0"
 )
 # Positions of the vertex attributes in pyrender's buffers, and what its flat shader has to multiply.
@@ -48,37 +49,40 @@ class Context:
     """
 
     def __init__(self) -> None:
-        platform = os.environ.setdefault("PYOPENGL_PLATFORM", "egl")
-        if platform != "egl":
-            raise RenderError(f"expected PYOPENGL_PLATFORM to be 'egl' or unset, got {platform!r}; unset it")
+        chosen = os.environ.setdefault("PYOPENGL_PLATFORM", "egl")
+        if chosen != "egl":
+            raise RenderError(f"expected PYOPENGL_PLATFORM to be 'egl' or unset, got {chosen!r}; unset it")
         try:
             from pyrender.platforms import egl
 
             device = egl.get_device_by_index(int(os.environ.get("EGL_DEVICE_ID", "0")))
-            self._platform = egl.EGLPlatform(0, 0, device=device)
-            self._platform.init_context()
-            self._release()
+            platform = egl.EGLPlatform(0, 0, device=device)
+            platform.init_context()
         except Exception as error:  # PyOpenGL fails in many ways, from AttributeError to AssertionError
-            raise RenderError(NO_EGL.format(error=str(error) or type(error).__name__)) from error
+            reason = shorten(f"{type(error).__name__} {error}", 100)
+            raise RenderError(NO_EGL.format(error=reason)) from error
+        self._display, self._context = platform._egl_display, platform._egl_context
+        platform._egl_display = None  # else it would shut down the display of all contexts when it is deleted
+        self._bind(None)
 
     @contextmanager
     def current(self) -> Iterator[None]:
-        self._platform.make_current()
+        self._bind(self._context)
         try:
             yield
         finally:
-            self._release()
+            self._bind(None)
 
     def destroy(self) -> None:
-        """Free the context, but not the display as pyrender does: that belongs to all contexts of the process."""
         from OpenGL import EGL
 
-        EGL.eglDestroyContext(self._platform._egl_display, self._platform._egl_context)
+        EGL.eglDestroyContext(self._display, self._context)
 
-    def _release(self) -> None:
+    def _bind(self, context: Any) -> None:
         from OpenGL import EGL
 
-        EGL.eglMakeCurrent(self._platform._egl_display, EGL.EGL_NO_SURFACE, EGL.EGL_NO_SURFACE, EGL.EGL_NO_CONTEXT)
+        context = EGL.EGL_NO_CONTEXT if context is None else context
+        EGL.eglMakeCurrent(self._display, EGL.EGL_NO_SURFACE, EGL.EGL_NO_SURFACE, context)
 
 
 class Canvas:
@@ -100,6 +104,8 @@ class Canvas:
         GL.glViewport(0, 0, width, height)
         GL.glEnable(GL.GL_DEPTH_TEST)
         GL.glClearColor(0.0, 0.0, 0.0, 1.0)
+        GL.glPixelStorei(GL.GL_PACK_ALIGNMENT, 1)  # rows of RGB are not padded to 4 bytes, here and in textures
+        GL.glPixelStorei(GL.GL_UNPACK_ALIGNMENT, 1)
 
     def clear(self) -> None:
         from OpenGL import GL

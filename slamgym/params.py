@@ -8,7 +8,7 @@ from pydantic_core import ErrorDetails
 
 from slamgym.camera import CAMERAS, PinholeCamera, resolve_camera
 from slamgym.errors import ConfigError, unknown_word
-from slamgym.slam.backend import BACKENDS
+from slamgym.slam.backend import load_backend
 
 RADIUS_OF_TURN = 0.25
 """metres; `turn_rate=None` turns at speed / RADIUS_OF_TURN, so that another speed retimes the same path."""
@@ -70,7 +70,7 @@ class DriveParams(Params):
 class SlamParams(Params):
     """The SLAM in the loop, how it is fed, and what its tracking is worth."""
 
-    slam: str = Field("orbslam3", description="SLAM backend")
+    slam: str = Field("orbslam3", description="SLAM backend, or 'module:class' of your own")
     slam_sync: Literal["lockstep", "free"] = Field(
         "lockstep", description="lockstep: wait after each frame until the SLAM idles; free: feed at full speed"
     )
@@ -85,8 +85,7 @@ class SlamParams(Params):
     @field_validator("slam")
     @classmethod
     def _known_backend(cls, slam: str) -> str:
-        if slam not in BACKENDS:
-            raise ConfigError(unknown_word("slam backend", slam, BACKENDS))
+        load_backend(slam)
         return slam
 
 

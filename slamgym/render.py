@@ -129,7 +129,7 @@ def _merge(parts: list[Part], lighting: str) -> Batch:
 
 
 def _colour(part: Part, lighting: str) -> NDArray[np.float32]:
-    colour = np.broadcast_to(np.float32(part.material.colour), part.vertices.shape)
+    colour = np.broadcast_to(np.asarray(part.material.colour, dtype=np.float32), part.vertices.shape)
     if lighting == "flat":
         return colour
     if part.light is None:
@@ -141,8 +141,8 @@ def _split_cells(batch: Batch) -> Iterator[Batch]:
     centres = batch.vertices[batch.faces].mean(axis=1)
     _, cell = np.unique(np.floor(centres[:, :2] / CELL_M), axis=0, return_inverse=True)
     for index in range(cell.max(initial=-1) + 1):
-        used, faces = np.unique(batch.faces[cell == index], return_inverse=True)
-        faces = faces.reshape(-1, 3).astype(np.int32)
+        used, corner = np.unique(batch.faces[cell == index], return_inverse=True)
+        faces = corner.reshape(-1, 3).astype(np.int32)
         yield Batch(batch.texture, batch.vertices[used], faces, batch.uv[used], batch.colour[used])
 
 
@@ -158,6 +158,8 @@ def visible_boxes(corners: FloatArray, clip_from_world: FloatArray) -> NDArray[n
     """Indices of the boxes that reach into the view, nearest first: no box lies wholly beyond one clipping plane."""
     clip = corners @ clip_from_world.T
     w = clip[..., 3:]
-    outside = (clip[..., :3] > w).all(axis=1).any(axis=1) | (clip[..., :3] < -w).all(axis=1).any(axis=1)
-    nearest_first = np.argsort(w[..., 0].min(axis=1), kind="stable")
-    return nearest_first[~outside[nearest_first]]
+    beyond = np.concatenate([clip[..., :3] > w, clip[..., :3] < -w], axis=2)
+    outside = np.any(np.all(beyond, axis=1), axis=1)
+    nearest_first: NDArray[np.intp] = np.argsort(w[..., 0].min(axis=1), kind="stable")
+    visible: NDArray[np.intp] = nearest_first[~outside[nearest_first]]
+    return visible

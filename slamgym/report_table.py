@@ -8,6 +8,7 @@ from rich.table import Table
 from slamgym.rollout import Episode
 
 COLUMNS: dict[str, tuple[str, str]] = {
+    "path": ("seed", "{}"),
     "speed\nm/s": ("speed", "{:.2f}"),
     "reached\nm/s": ("speed_p95_mps", "{:.2f}"),
     "status": ("status", "{}"),

@@ -21,7 +21,7 @@ import yaml
 
 from slamgym.errors import OutputError
 from slamgym.eval.plots import plot_map
-from slamgym.eval.robustness import evaluated_map
+from slamgym.eval.robustness import estimate_by_frame, evaluated_map
 from slamgym.eval.trajectory import Trajectory, write_tum
 from slamgym.rollout import Episode
 from slamgym.types import SlamRecord, TrackingState
@@ -84,9 +84,10 @@ def frames_table(episode: Episode) -> pd.DataFrame:
 
 
 def final_estimate(record: SlamRecord) -> Trajectory:
-    """The SLAM's final poses (T_map_cam) in the evaluated map."""
-    chosen = record.final.map_id == evaluated_map(record)
-    return Trajectory(record.final.stamps_ns[chosen], record.final.T_map_cam[chosen])
+    """The SLAM's final poses (T_map_cam) in the evaluated map; empty when no frame was tracked."""
+    T_map_cam, map_id = estimate_by_frame(record)
+    chosen = (map_id == evaluated_map(record)) & (map_id >= 0)
+    return Trajectory(record.stamps_ns[chosen], T_map_cam[chosen])
 
 
 def _slam_table(record: SlamRecord) -> pd.DataFrame:

@@ -15,8 +15,9 @@ from slamgym.errors import ConfigError
 from slamgym.eval.episode import summarize_slam
 from slamgym.params import SlamParams
 from slamgym.slam.backend import SlamConfig, check_config
+from slamgym.slam.record import Fed, feed, finish
 from slamgym.slam.session import SlamSession
-from slamgym.types import Frame, SlamEvent, SlamRecord, Summary, TrackingState, TrackResult
+from slamgym.types import Frame, SlamEvent, SlamRecord, Summary, TrackingState
 
 
 class SlamWrapper(gym.Wrapper[Observation, NDArray[np.float32], Observation, NDArray[np.float32]], RecordConstructorArgs):
@@ -63,7 +64,7 @@ class SlamWrapper(gym.Wrapper[Observation, NDArray[np.float32], Observation, NDA
         self._next_session = None
         obs, info = self.env.reset(seed=seed, options=options)
         self._session.wait_ready()
-        self._fed: list[tuple[int, NDArray[np.float64], TrackResult]] = []
+        self._fed: list[Fed] = []
         self._steps = 0
         self._record: SlamRecord | None = None
         self._feed(obs, info)
@@ -78,7 +79,7 @@ class SlamWrapper(gym.Wrapper[Observation, NDArray[np.float32], Observation, NDA
         reward = float(progress)
         if fresh and not self._session.outcome:
             self._feed(obs, info)
-            if self.slam_params.reward == "tracking" and self._last.state is not TrackingState.OK:
+            if self.slam_params.reward == "tracking" and self._fed[-1].result.state is not TrackingState.OK:
                 reward -= 1.0
         terminated = terminated or bool(self._session.outcome)
         obs, info = self._with_slam(obs, info, fresh)
@@ -96,7 +97,7 @@ class SlamWrapper(gym.Wrapper[Observation, NDArray[np.float32], Observation, NDA
             assert self._session is not None
             # The next episode's SLAM loads its libraries while this one shuts down.
             self._next_session = self._new_session()
-            self._record = self._recorded(self._session)
+            self._record = finish(self._session, self._fed)
         return self._record
 
     def slam_log_tail(self) -> str:
@@ -127,11 +128,10 @@ class SlamWrapper(gym.Wrapper[Observation, NDArray[np.float32], Observation, NDA
     def _feed(self, obs: Observation, info: Info) -> None:
         assert self._session is not None
         frame = Frame(info["stamp_ns"], obs["rgb"], obs["depth"], info["T_world_cam"])
-        self._last = self._session.track(frame)
-        self._fed.append((frame.stamp_ns, frame.T_world_cam, self._last))
+        self._fed.append(feed(self._session, frame))
 
     def _with_slam(self, obs: Observation, info: Info, fresh: bool) -> tuple[Observation, Info]:
-        last = self._last
+        last = self._fed[-1].result
         info["slam"] = {
             "state": last.state.label,
             "T_map_cam": last.T_map_cam.copy(),
@@ -141,18 +141,3 @@ class SlamWrapper(gym.Wrapper[Observation, NDArray[np.float32], Observation, NDA
             "event": str(last.event) if fresh else str(SlamEvent.NONE),
         }
         return {**obs, "slam_state": np.int64(last.state)}, info
-
-    def _recorded(self, session: SlamSession) -> SlamRecord:
-        stamps, T_world_cam, results = zip(*self._fed, strict=True)
-        final = session.finish()
-        return SlamRecord(
-            stamps_ns=np.array(stamps, dtype=np.int64),
-            T_world_cam=np.array(T_world_cam),
-            states=np.array([result.state for result in results], dtype=np.int64),
-            T_map_cam=np.array([result.T_map_cam for result in results]),
-            map_id=np.array([result.map_id for result in results], dtype=np.int64),
-            tracked_points=np.array([result.tracked_points for result in results], dtype=np.int64),
-            events=tuple(result.event for result in results),
-            final=final,
-            outcome=session.outcome,
-        )

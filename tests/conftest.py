@@ -1,3 +1,4 @@
+import os
 from pathlib import Path
 
 import pytest
@@ -10,3 +11,24 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip(f"real test data not found: expected the folder {folder.parent.name}/data beside the checkout")
     return folder
+
+
+@pytest.fixture
+def children():
+    """A function that gives the ids of all live descendants of this process."""
+
+    def descendants() -> set[int]:
+        parents = {}
+        for stat in Path("/proc").glob("[0-9]*/stat"):
+            try:
+                fields = stat.read_text().rpartition(")")[2].split()
+            except OSError:
+                continue
+            if fields[0] != "Z":
+                parents[int(stat.parent.name)] = int(fields[1])
+        found = {os.getpid()}
+        while grown := {pid for pid, parent in parents.items() if parent in found} - found:
+            found |= grown
+        return found - {os.getpid()}
+
+    return descendants

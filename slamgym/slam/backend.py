@@ -2,12 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Protocol
+from importlib import import_module
+from typing import Any, ClassVar, Protocol, TypeVar, cast
 
-from pydantic import BaseModel
+import numpy as np
+from pydantic import BaseModel, ValidationError
 
 from slamgym.camera import PinholeCamera
-from slamgym.types import Frame, SlamTrajectory, TrackResult
+from slamgym.errors import ConfigError, unknown_word
+from slamgym.types import Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +26,8 @@ class SlamConfig:
 class Backend(Protocol):
     """One SLAM run over one sequence. It lives in a worker process, so it may crash, hang or print as it likes.
 
-    A backend's module must import without its SLAM library: `Options`, `supports_loop_closure` and
-    `has_background_threads` are read in the user's process, `__init__` and the rest run in the worker's.
+    A backend's module must import without its SLAM library: `Options`, `supports_loop_closure`,
+    `has_background_threads` and `check` are used in the user's process, `__init__` and the rest in the worker's.
     """
 
     Options: ClassVar[type[BaseModel]]
@@ -32,6 +35,11 @@ class Backend(Protocol):
     supports_loop_closure: ClassVar[bool]
     has_background_threads: ClassVar[bool]
     """Whether work goes on after `track` returns, so that lock-step has to wait for it."""
+
+    @classmethod
+    def check(cls, config: SlamConfig) -> None:
+        """Raise SlamError, saying what to install, when something is missing that can be seen without starting."""
+        ...
 
     def __init__(self, config: SlamConfig) -> None: ...
 
@@ -47,3 +55,44 @@ BACKENDS: dict[str, str] = {
     "orbslam3": "slamgym.slam.orbslam3:OrbSlam3",
 }
 """Name -> "module:class". A new backend is one file and one line here."""
+
+
+def load_backend(name: str) -> type[Backend]:
+    """The class that a registered name, or a "module:class" of the user's own, stands for; raises ConfigError."""
+    if name not in BACKENDS and ":" not in name:
+        raise ConfigError(unknown_word("slam backend", name, BACKENDS))
+    module, _, attribute = BACKENDS.get(name, name).partition(":")
+    try:
+        return cast(type[Backend], getattr(import_module(module), attribute))
+    except (ImportError, AttributeError) as error:
+        raise ConfigError(f"slam backend {name!r}: expected an importable 'module:class'; {error}") from error
+
+
+Options = TypeVar("Options", bound=BaseModel)
+
+
+def parse_options(model: type[Options], options: Mapping[str, Any]) -> Options:
+    """Options as the backend's model; raises ConfigError that names the option and the closest valid one."""
+    for key in options:
+        if key not in model.model_fields:
+            raise ConfigError(unknown_word("slam option", key, model.model_fields))
+    try:
+        return model.model_validate(dict(options))
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"]))
+        raise ConfigError(f"slam option {where!r}: {first['msg']}, got {first['input']!r}") from None
+
+
+def check_config(name: str, config: SlamConfig) -> None:
+    """Refuse, in the user's process, what the backend cannot honour; raises ConfigError or SlamError."""
+    backend = load_backend(name)
+    parse_options(backend.Options, config.options)
+    if config.loop_closure is not None and not backend.supports_loop_closure:
+        raise ConfigError(f"slam backend {name!r} closes no loops: leave loop_closure=None, got {config.loop_closure}")
+    backend.check(config)
+
+
+def untracked(state: TrackingState, event: SlamEvent = SlamEvent.NONE, tracked_points: int = 0) -> TrackResult:
+    """Answer for a frame without a trusted pose."""
+    return TrackResult(state, np.full((4, 4), np.nan), -1, tracked_points, event)

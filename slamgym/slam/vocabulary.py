@@ -45,8 +45,10 @@ class Vocabulary:
     weight: FloatArray
 
     def to_text(self) -> str:
-        """DBoW2's text format: branching, depth, L1 score, tf-idf; then one node a line. No newline at the end: the
-        reader would take it for one more node."""
+        """DBoW2's text format: branching, depth, L1 score, tf-idf; then one node a line.
+
+        There is no newline at the end: DBoW2's reader would take it for one more node.
+        """
         rows = zip(self.parent, self.is_leaf, self.descriptors, self.weight, strict=True)
         lines = [f"{p} {int(leaf)} {' '.join(map(str, d))} {w:.4g}" for p, leaf, d, w in rows]
         return "\n".join([f"{self.branching} {self.depth} 0 0", *lines])
@@ -59,10 +61,10 @@ def image_descriptors(rgb: NDArray[np.uint8], features: int = 1000) -> Descripto
     return np.empty((0, 32), np.uint8) if descriptors is None else descriptors
 
 
-def train(images: Sequence[Descriptors], branching: int = 6, depth: int = 6, min_split: int = 2, seed: int = 0) -> Vocabulary:
+def train(images: Sequence[Descriptors], branching: int = 6, depth: int = 6, seed: int = 0) -> Vocabulary:
     """Vocabulary from the descriptors of each training image; the same input gives the same tree.
 
-    A node of fewer than `min_split` different descriptors is not split any more, which bounds the size of the tree.
+    ORB-SLAM compares images by the nodes four levels above the leaves, so depth should not be less than 6.
     Raises SlamError when there are fewer descriptors than branches.
     """
     packed = [np.ascontiguousarray(d).view(np.uint64) for d in images if len(d)]
@@ -70,7 +72,7 @@ def train(images: Sequence[Descriptors], branching: int = 6, depth: int = 6, min
     if len(words) < branching:
         raise SlamError(f"vocabulary: expected at least {branching} descriptors, got {len(words)}; give more images")
     image_of = np.repeat(np.arange(len(packed)), [len(d) for d in packed])
-    tree = _Tree(words, branching, depth, min_split, np.random.default_rng(seed))
+    tree = _Tree(words, branching, depth, np.random.default_rng(seed))
     members = tree.grow()
     return Vocabulary(
         branching=branching,
@@ -94,7 +96,6 @@ class _Tree:
     words: NDArray[np.uint64]
     branching: int
     depth: int
-    min_split: int
     rng: np.random.Generator
     parent: list[int] = field(default_factory=list)
     centre: list[NDArray[np.uint64]] = field(default_factory=list)
@@ -117,7 +118,7 @@ class _Tree:
         return members
 
     def _can_split(self, members: IntArray) -> bool:
-        return len(members) >= self.min_split and bool((self.words[members] != self.words[members[0]]).any())
+        return bool((self.words[members] != self.words[members[0]]).any())
 
     def _split(self, members: IntArray) -> list[tuple[NDArray[np.uint64], IntArray]]:
         words = self.words[members]
@@ -137,7 +138,7 @@ def hamming(a: NDArray[np.uint64], b: NDArray[np.uint64]) -> NDArray[np.int64]:
 
 
 def _seed_centres(words: NDArray[np.uint64], count: int, rng: np.random.Generator) -> NDArray[np.uint64]:
-    """k-means++: each next centre is drawn with the squared distance to the nearest one so far; fewer if words run out."""
+    """k-means++: each next centre is drawn by its squared distance to the nearest so far; fewer if words run out."""
     centres = [words[rng.integers(len(words))]]
     nearest = hamming(words, centres[0][None])[:, 0]
     while len(centres) < count and nearest.any():

@@ -6,6 +6,7 @@ make every place look like every other to a feature matcher.
 """
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -48,13 +49,12 @@ def _grain(rng: np.random.Generator, size: int) -> FloatArray:
 
 
 def _knots(rng: np.random.Generator, size: int, count: int) -> FloatArray:
-    y, x = np.mgrid[:size, :size]
     tone = np.zeros((size, size))
-    for cx, cy in rng.uniform(0, size, (count, 2)):
-        dx, dy = ((d + size / 2) % size - size / 2 for d in (x - cx, y - cy))
-        radius = rng.uniform(0.006, 0.012) * size
-        distance = np.hypot(dx / 2.2, dy) / radius
-        tone -= rng.uniform(0.25, 0.5) * np.exp(-distance) * (1.0 + 0.4 * np.cos(5.0 * distance))
+    reach = np.arange(-size // 12, size // 12)
+    for row, column in rng.integers(0, size, (count, 2)):
+        distance = np.hypot(reach / 2.2, reach[:, None]) / (rng.uniform(0.006, 0.012) * size)
+        knot = np.exp(-distance) * (1.0 + 0.4 * np.cos(5.0 * distance))
+        tone[np.ix_((row + reach) % size, (column + reach) % size)] -= rng.uniform(0.25, 0.5) * knot
     return tone
 
 
@@ -68,7 +68,7 @@ def planks(rng: np.random.Generator, colour: Colour, rows: int = 16, size: int =
     grain = _grain(rng, size) + _knots(rng, size, 26)
     tone = np.empty((size, size))
     edges = np.linspace(0, size, rows + 1).astype(int)
-    for top, bottom in zip(edges[:-1], edges[1:], strict=True):
+    for top, bottom in pairwise(edges.tolist()):
         joints = np.sort(rng.integers(0, size, 3))
         board = np.searchsorted(joints, np.arange(size)) % 3
         tone[top:bottom] = np.roll(grain, rng.integers(size), axis=1)[top:bottom] + rng.normal(0.0, 0.1, 3)[board]
@@ -101,8 +101,8 @@ def tiles(rng: np.random.Generator, colour: Colour, count: int = 6, size: int = 
     pixel_y, pixel_x = np.mgrid[:size, :size]
     tone = tone + _veins(rng, size)[(pixel_y + shift) % size, (pixel_x + 3 * shift) % size]
     image = tinted(colour, tone + 0.02 * noise(rng, size, 0.5))
-    joint = cell % 1.0 < 1.2 * count / size * 2.0
-    image[joint[:, None] | joint[None, :]] = tinted((176, 172, 166), 0.08 * noise(rng, size, 0.8))[0, 0]
+    joint = cell % 1.0 < 2.4 * count / size
+    image[joint[:, None] | joint[None, :]] = (176, 172, 166)
     return image
 
 
@@ -138,10 +138,10 @@ def checked(rng: np.random.Generator, colour: Colour, other: Colour, size: int =
     return np.asarray((np.array(colour) * (1 - share) + np.array(other) * share) * cloth, dtype=np.uint8)
 
 
-def leaves(rng: np.random.Generator, colour: Colour = (70, 120, 58), size: int = 128) -> Image:
+def leaves(rng: np.random.Generator, colour: Colour = (92, 132, 74), size: int = 128) -> Image:
     """A leaf surface: blotches and a paler rib along u."""
     rib = np.exp(-((np.linspace(-1, 1, size) / 0.06) ** 2))[:, None]
-    return tinted(colour, 0.22 * noise(rng, size, 1.4) + 0.1 * noise(rng, size, 0.6) + 0.35 * rib)
+    return tinted(colour, 0.1 * noise(rng, size, 1.4) + 0.06 * noise(rng, size, 0.6) + 0.35 * rib)
 
 
 def striped_wallpaper(rng: np.random.Generator, colour: Colour, size: int = 512) -> Image:
@@ -172,7 +172,7 @@ def _flower(
 
     def draw(image: Image, offset: FloatArray) -> None:
         at = centre + offset
-        stem = np.array([at, at + (bend[0], radius), at + (bend[1], 2.2 * radius)]).round().astype(np.int32)
+        stem = (at + np.array([(0.0, 0.0), (bend[0], radius), (bend[1], 2.2 * radius)])).round().astype(np.int32)
         cv2.polylines(image, [stem], False, tones[0], 2, cv2.LINE_AA)
         for angle in turn + np.arange(petals) * 2.0 * np.pi / petals:
             petal = at + 0.6 * radius * np.array([np.cos(angle), np.sin(angle)])

@@ -6,6 +6,7 @@ per vertex.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -76,13 +77,26 @@ def _planar_uv(corners: FloatArray) -> FloatArray:
     axes = sides / np.maximum(lengths, 1e-9)
     swap = lengths[:, 1, 0] > lengths[:, 0, 0]
     axes[swap] = axes[swap, ::-1]
-    return np.einsum("nck,nak->nca", corners, axes)
+    uv: FloatArray = np.einsum("nck,nak->nca", corners, axes)
+    return uv
 
 
 def box(x: Interval, y: Interval, z: Interval) -> Mesh:
     """A closed axis-aligned box."""
     corners = np.array([(x[i & 1], y[i >> 1 & 1], z[i >> 2]) for i in range(8)])
     return quads(corners[_BOX_FACES])
+
+
+def border(x: Interval, y: Interval, z: Interval, bar: float) -> Mesh:
+    """Four bars, `bar` wide, inside the edges of an upright rectangle: a frame."""
+    return merge(
+        [
+            box((x[0], x[0] + bar), y, z),
+            box((x[1] - bar, x[1]), y, z),
+            box((x[0] + bar, x[1] - bar), y, (z[0], z[0] + bar)),
+            box((x[0] + bar, x[1] - bar), y, (z[1] - bar, z[1])),
+        ]
+    )
 
 
 def picture(width: float, z: Interval, y: float) -> Mesh:
@@ -98,17 +112,18 @@ def sheet(x: Interval, y: Interval, z: float) -> Mesh:
     return quads([corners], [_UNIT_SQUARE])
 
 
-def lathe(profile: Sequence[tuple[float, float]], at: ArrayLike = (0.0, 0.0, 0.0), sides: int = 16) -> Mesh:
+def lathe(
+    profile: Sequence[tuple[float, float]], at: ArrayLike = (0.0, 0.0, 0.0), sides: int = 16, roundness: float = 1.0
+) -> Mesh:
     """A solid of revolution about the vertical axis through `at`.
 
     profile: (radius, height) pairs, bottom first along the outside; closed when it starts and ends on the axis or
-    where it began.
+    where it began. roundness: 1 for circles, less for rectangles with round corners.
     """
     angle = np.linspace(0.0, 2.0 * np.pi, sides + 1)
-    angle[-1] = 0.0  # exactly the first again
-    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    bands = [_band(ring, a, b) for a, b in zip(profile[:-1], profile[1:], strict=True)]
-    return placed(merge(bands), at=at)
+    ring = np.stack([_signed_power(np.cos(angle), roundness), _signed_power(np.sin(angle), roundness)], axis=1)
+    ring[-1] = ring[0]  # exactly the first again
+    return placed(merge(_band(ring, a, b) for a, b in pairwise(profile)), at=at)
 
 
 def _band(ring: FloatArray, a: Interval, b: Interval) -> Mesh:
@@ -129,11 +144,17 @@ def cylinder(radius: float, z: Interval, at: Interval = (0.0, 0.0), sides: int =
     return lathe([(0.0, z[0]), (radius, z[0]), (radius, z[1]), (0.0, z[1])], (*at, 0.0), sides)
 
 
+def ball(radius: float, at: tuple[float, float, float]) -> Mesh:
+    """A closed sphere of few faces: fruit, blossoms."""
+    r, d = radius, 0.7 * radius
+    return lathe([(0.0, -r), (d, -d), (r, 0.0), (d, d), (0.0, r)], at, sides=8)
+
+
 def cushion(x: Interval, y: Interval, z: Interval, softness: float = 0.35) -> Mesh:
     """A closed box with round edges: a superellipsoid, from nearly a box (softness 0.2) to an ellipsoid (1.0)."""
     low, high = np.array([x, y, z]).T
-    latitude = np.linspace(-np.pi / 2, np.pi / 2, 9)
-    longitude = np.linspace(0.0, 2.0 * np.pi, 21)
+    latitude = np.linspace(-np.pi / 2, np.pi / 2, 7)
+    longitude = np.linspace(0.0, 2.0 * np.pi, 17)
     cos_lat, sin_lat = _signed_power(np.cos(latitude), softness), _signed_power(np.sin(latitude), softness)
     cos_lon, sin_lon = _signed_power(np.cos(longitude), softness), _signed_power(np.sin(longitude), softness)
     unit = np.stack(np.broadcast_arrays(cos_lat[:, None] * cos_lon, cos_lat[:, None] * sin_lon, sin_lat[:, None]), -1)

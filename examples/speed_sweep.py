@@ -1,4 +1,4 @@
-"""Drive one path at three speeds with ORB-SLAM3 in the loop; print one table and write a run folder for each."""
+"""How fast may the robot drive? The same paths at several speeds, ORB-SLAM3 in the loop: one table, a folder a run."""
 
 from datetime import datetime
 from pathlib import Path
@@ -15,26 +15,28 @@ from slamgym.run_folder import check_free, write_run
 
 
 def main(
+    seeds: tuple[int, ...] = (7,),
     speeds: tuple[float, ...] = (0.2, 0.8, 1.6),
-    seed: int = 7,
     scene: str = "procedural",
     path_length_m: float = 10.0,
-    out: Path = Path("out") / f"three_speeds-{datetime.now():%Y%m%d-%H%M%S}",
+    out: Path = Path("out") / f"speed_sweep-{datetime.now():%Y%m%d-%H%M%S}",
 ) -> None:
-    """Drive the path that `seed` picks in `scene` at each of `speeds` (m/s)."""
+    """Drive the path that each of `seeds` picks in `scene` at each of `speeds` (m/s)."""
     console = Console()
     check_free(out)
     episodes: list[Episode] = []
     try:
         for speed in speeds:
             env = gym.make("HomeRobotSLAM-v0", scene=scene, speed=speed, path_length_m=path_length_m)
-            with console.status(f"driving {path_length_m:g} m at {speed:g} m/s"):
-                try:
-                    episodes.append(run_episode(env, PathFollower(), seed))
-                finally:
-                    env.close()
-            folder = write_run(episodes[-1], out / f"speed_{speed:g}")
-            console.print(f"{speed:g} m/s: {episodes[-1].summary['status']}, see {folder / 'map.png'}", soft_wrap=True)
+            try:
+                for seed in seeds:
+                    with console.status(f"path {seed}: driving {path_length_m:g} m at {speed:g} m/s"):
+                        episode = run_episode(env, PathFollower(), seed)
+                    folder = write_run(episode, out / f"path_{seed}" / f"speed_{speed:g}")
+                    console.print(f"{speed:g} m/s: {episode.summary['status']}, {folder / 'map.png'}", soft_wrap=True)
+                    episodes.append(episode)
+            finally:
+                env.close()
     except KeyboardInterrupt:
         console.print("interrupted; the finished drives are kept")
     console.print(episode_table(episodes))

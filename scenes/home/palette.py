@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from slamgym.scenes import pictures, textures
+from slamgym.scenes.home import pictures, prints, textures
+from slamgym.scenes.home.textures import Colour, Image
 from slamgym.scenes.house import Material
-from slamgym.scenes.textures import Colour, Image
 
 Rgb = tuple[float, float, float]
 
@@ -61,7 +61,13 @@ class Palette:
     bath_floor: Finish
 
 
-_WALL_COLOURS: tuple[Colour, ...] = ((226, 219, 204), (205, 214, 206), (214, 208, 218), (228, 208, 184), (196, 208, 218))
+_WALL_COLOURS: tuple[Colour, ...] = (
+    (226, 219, 204),
+    (205, 214, 206),
+    (214, 208, 218),
+    (228, 208, 184),
+    (196, 208, 218),
+)
 _CLOTH_COLOURS: tuple[Colour, ...] = ((96, 112, 128), (150, 92, 70), (88, 116, 92), (168, 148, 110), (120, 84, 104))
 _FLOOR_COLOURS: tuple[Colour, ...] = ((172, 126, 82), (150, 104, 66), (188, 150, 108), (132, 96, 68))
 _FRONT_COLOURS: tuple[Colour, ...] = ((222, 220, 210), (150, 168, 160), (190, 160, 120), (122, 140, 158))
@@ -96,21 +102,23 @@ def make_palette(rng: np.random.Generator) -> Palette:
         leaves=_textured("leaves", textures.leaves(rng), 0.3),
         soil=_plain("soil", (0.05, 0.035, 0.025)),
         clay=_textured("clay", textures.plaster(rng, (176, 104, 74), 128, 0.06), 0.5),
-        books=_picture("books", pictures.book_spines(rng)),
-        labels=_picture("labels", pictures.labels(rng)),
-        clock=_picture("clock", pictures.clock_face(rng)),
-        screen=_picture("screen", pictures.screen(rng)),
+        books=_picture("books", prints.book_spines(rng)),
+        labels=_picture("labels", prints.labels(rng)),
+        clock=_picture("clock", prints.clock_face(rng)),
+        screen=_picture("screen", prints.screen(rng)),
         cushions=tuple(
             _textured(f"cushion {i}", texture, 0.5)
             for i, texture in enumerate(
-                (textures.checked(rng, cloth[3], cloth[4]), textures.fabric(rng, cloth[3]), textures.fabric(rng, cloth[0]))
+                (
+                    textures.checked(rng, cloth[3], cloth[4]),
+                    textures.fabric(rng, cloth[3]),
+                    textures.fabric(rng, cloth[0]),
+                )
             )
         ),
         rugs=tuple(_picture(f"rug {i}", pictures.rug(rng)) for i in range(2)),
-        pictures=tuple(
-            _picture(f"picture {i}", pictures.PICTURES[i % len(pictures.PICTURES)](rng)) for i in range(9)
-        ),
-        views=tuple(_picture(f"view {i}", pictures.outside(rng)) for i in range(2)),
+        pictures=tuple(_picture(f"picture {i}", pictures.PICTURES[i % len(pictures.PICTURES)](rng)) for i in range(14)),
+        views=tuple(_picture(f"view {i}", prints.outside(rng)) for i in range(2)),
         plain_walls=tuple(
             _textured(f"paint {i}", textures.plaster(rng, colour), 2.0) for i, colour in enumerate(walls[:3])
         ),

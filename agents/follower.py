@@ -1,0 +1,84 @@
+"""Agents, and the one that follows the planned path."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slamgym.agents.path import WAYPOINT_SPACING_M
+from slamgym.types import FloatArray
+
+Action = NDArray[np.float32]
+"""Forward and turn (2,), in [-1, 1]: shares of the robot's speed and of its turn rate, turning left above 0."""
+
+FULL_SPEED_RADIUS_M = 0.3
+BRAKING_DISTANCE_M = 0.35
+"""Enough to stop from 0.8 m/s at 1 m/s^2."""
+SLOWEST = 0.1
+HARD_TURN = 0.8
+TURN_ON_THE_SPOT_RAD = np.pi / 3
+REACHED_M = 0.05
+
+
+class Agent(Protocol):
+    """Whatever drives the robot. An attribute `reset_options`, where it has one, goes to the reset of the environment
+    as `options`.
+    """
+
+    def act(self, obs: Mapping[str, Any], info: Mapping[str, Any]) -> Action:
+        """The action (2,), float32, in [-1, 1], for an observation and info of the environment."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class PathFollower:
+    """Pure pursuit of `obs["waypoints"]`; it looks at nothing else and remembers nothing.
+
+    R. C. Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm, 1992. It slows down before bends that are
+    tighter than 0.3 m and turns on the spot where the path leads back. turning_radius_m: the environment's speed
+    divided by its turn rate, metres.
+    """
+
+    reset_options: ClassVar[Mapping[str, Any]] = {"tour": "one_way"}
+    turning_radius_m: float = 0.25
+
+    def act(self, obs: Mapping[str, Any], info: Mapping[str, Any]) -> Action:  # noqa: ARG002
+        waypoints = np.asarray(obs["waypoints"], dtype=np.float64)
+        target = _target(waypoints)
+        distance = float(np.hypot(*target))
+        bearing = float(np.arctan2(target[1], target[0]))
+        if distance < REACHED_M:
+            return np.zeros(2, dtype=np.float32)
+        if abs(bearing) > TURN_ON_THE_SPOT_RAD:
+            return np.array([0.0, np.sign(bearing)], dtype=np.float32)
+        forward = _allowed_speed(waypoints)
+        turn = forward * 2 * np.sin(bearing) / distance * self.turning_radius_m
+        # Slower where the turn comes near its limit: turning faster takes time, and at speed the robot would overshoot.
+        ease = max(1.0, abs(turn) / HARD_TURN) ** 2
+        return np.array([forward / ease, turn / ease], dtype=np.float32)
+
+
+def _target(waypoints: FloatArray) -> FloatArray:
+    """The point (2,) to steer for: 0.3 m along the path, or nearer where the path folds back before that."""
+    first, second = waypoints[:2]
+    if first @ (second - first) < 0 and first[0] > REACHED_M:
+        return cast(FloatArray, first)
+    ahead = np.vstack([(waypoints[:-1] + waypoints[1:]) / 2, waypoints[-1]])
+    # Right at a fold the nearest of them lie under the robot; at the path's end all do.
+    beyond = np.hypot(*ahead.T) > REACHED_M
+    return cast(FloatArray, ahead[np.argmax(beyond) if beyond.any() else -1])
+
+
+def _allowed_speed(waypoints: FloatArray) -> float:
+    """Share of full speed from which the robot can still slow down for each bend in the waypoints (5, 2)."""
+    segments = np.diff(waypoints, axis=0, prepend=np.zeros((1, 2)))
+    (ax, ay), (bx, by) = segments[:-1].T, segments[1:].T
+    curvature = np.abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by)) / WAYPOINT_SPACING_M
+    in_bend = 1 / np.maximum(1.0, FULL_SPEED_RADIUS_M * curvature)
+    # A bend seen at one waypoint may have begun at the one before.
+    distance = np.cumsum(np.hypot(ax, ay)) - WAYPOINT_SPACING_M
+    # v^2 = v_bend^2 + 2 a d
+    allowed = np.sqrt(in_bend**2 + np.maximum(distance, 0.0) / BRAKING_DISTANCE_M)
+    return float(np.clip(allowed.min(), SLOWEST, 1.0))

@@ -1,0 +1,1 @@
+"""Parts of a procedural home: plan, shell, surfaces, furniture and where it stands."""

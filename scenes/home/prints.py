@@ -1,0 +1,121 @@
+"""Printed things made by code: book spines, labels, a clock, a screen, and the view from a window."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from slamgym.scenes.home.pictures import DYES, FONTS, WORDS, aged, canvas, figure, landscape, random_ink, text_lines
+from slamgym.scenes.home.textures import Image, noise, tinted
+
+
+def _cloth(rng: np.random.Generator) -> NDArray[np.float64]:
+    """A binding's colour: one of the dyes, paler or darker, or anything muted."""
+    dye = np.array(DYES[int(rng.integers(len(DYES)))] if rng.random() < 0.6 else random_ink(rng, 25, 215))
+    return np.asarray(dye * rng.uniform(0.6, 1.2))
+
+
+SPINES = (4, 24)
+"""Rows and columns of book spines in `book_spines`."""
+
+
+def book_spines(rng: np.random.Generator, size: int = 512) -> Image:
+    """An atlas of SPINES book spines, upright: bands, ornaments and lettering."""
+    image = canvas(size, size, (128, 128, 128))
+    y = np.linspace(0, size, SPINES[0] + 1).astype(int)
+    x = np.linspace(0, size, SPINES[1] + 1).astype(int)
+    for row, column in np.ndindex(SPINES):
+        cell = image[y[row] : y[row + 1], x[column] : x[column + 1]]
+        cell[:] = _cloth(rng)
+        _letter_spine(rng, cell)
+    return aged(rng, image)
+
+
+def _letter_spine(rng: np.random.Generator, spine: Image) -> None:
+    height, width = spine.shape[:2]
+    ink = random_ink(rng, 170, 255) if spine[0, 0].mean() < 130 else random_ink(rng, 10, 80)
+    for y in rng.integers(4, height - 8, int(rng.integers(1, 4))).tolist():
+        spine[y : y + int(rng.integers(2, 6))] = random_ink(rng)
+    y, end = int(rng.integers(14, 40)), int(rng.integers(height // 2, height - 12))
+    while y < end:
+        length, indent = int(rng.integers(3, 8)), int(rng.integers(4, 7))
+        spine[y : y + length, indent : width - indent] = ink
+        y += length + int(rng.integers(2, 5))
+
+
+LABELS = (4, 6)
+"""Rows and columns of packages in `labels`."""
+
+
+def labels(rng: np.random.Generator, size: int = 512) -> Image:
+    """An atlas of LABELS printed packages and jars."""
+    image = canvas(size, size, (200, 200, 200))
+    y = np.linspace(0, size, LABELS[0] + 1).astype(int)
+    x = np.linspace(0, size, LABELS[1] + 1).astype(int)
+    for row, column in np.ndindex(LABELS):
+        cell = image[y[row] : y[row + 1], x[column] : x[column + 1]]
+        cell[:] = random_ink(rng, 90, 250)
+        height, width = cell.shape[:2]
+        for _ in range(5):
+            figure(rng, cell, (int(rng.integers(width)), int(rng.integers(height))), width // 4, [random_ink(rng)])
+        word, scale, ink = str(rng.choice(WORDS)), float(rng.uniform(0.35, 0.55)), random_ink(rng, 0, 60)
+        cv2.putText(cell, word, (4, height // 3), FONTS[0], scale, ink, 1, cv2.LINE_AA)
+        text_lines(rng, cell, 2 * height // 3, height - 6, 6, width - 6)
+    return image
+
+
+def outside(rng: np.random.Generator, height: int = 384, width: int = 512) -> Image:
+    """A bright street as seen through a window: clouds, house fronts, trees, a lawn."""
+    clouds = np.clip(noise(rng, 512, 1.7)[:height, :width, None], 0.0, 1.5) / 1.5
+    image = (np.array([165, 200, 240]) * (1 - clouds) + 250 * clouds).astype(np.uint8)
+    x = 0
+    while x < width:
+        wide, top = int(rng.integers(70, 130)), int(rng.integers(height // 4, height // 2))
+        _house_front(rng, image[top : int(0.78 * height), x : x + wide])
+        x += wide + int(rng.integers(0, 40))
+    image[int(0.76 * height) :] = tinted((140, 175, 105), 0.08 * noise(rng, 512, 1.0))[: height - int(0.76 * height)]
+    for x in rng.integers(0, width, 7).tolist():
+        _crown(rng, image, x, int(rng.integers(int(0.5 * height), int(0.72 * height))))
+    return image
+
+
+def _house_front(rng: np.random.Generator, front: Image) -> None:
+    front[:] = random_ink(rng, 150, 225)
+    height, width = front.shape[:2]
+    front[:10] = random_ink(rng, 90, 150)
+    for y in range(22, height - 24, 36):
+        for x in range(10, width - 16, 26):
+            front[y : y + 22, x : x + 14] = 240
+            front[y + 2 : y + 20, x + 2 : x + 12] = random_ink(rng, 60, 140)
+
+
+def _crown(rng: np.random.Generator, image: Image, x: int, y: int) -> None:
+    cv2.line(image, (x, y), (x, int(0.8 * image.shape[0])), (90, 70, 55), 6)
+    for dx, dy in rng.normal(0.0, 17.0, (34, 2)).astype(int).tolist():
+        green = random_ink(rng, 70, 120)
+        cv2.circle(image, (x + dx, y + dy), int(rng.integers(5, 13)), (green[0], green[1] + 45, 60), -1, cv2.LINE_AA)
+
+
+def clock_face(rng: np.random.Generator, size: int = 192) -> Image:
+    """Twelve numerals and two hands."""
+    image = canvas(size, size, (246, 243, 235))
+    middle, radius = size // 2, 0.4 * size
+    for hour in range(1, 13):
+        angle = hour * np.pi / 6.0
+        spot = (int(middle + radius * np.sin(angle)) - 9, int(middle - radius * np.cos(angle)) + 7)
+        cv2.putText(image, str(hour), spot, FONTS[0], 0.55, (20, 20, 20), 1, cv2.LINE_AA)
+    for length, thickness in ((0.2, 6), (0.31, 3)):
+        angle = rng.uniform(0.0, 2.0 * np.pi)
+        tip = (int(middle + length * size * np.sin(angle)), int(middle - length * size * np.cos(angle)))
+        cv2.line(image, (middle, middle), tip, (20, 20, 20), thickness, cv2.LINE_AA)
+    return image
+
+
+def screen(rng: np.random.Generator, height: int = 256, width: int = 400) -> Image:
+    """A desktop: windows with lines of text over a picture."""
+    image = landscape(rng, height, width)
+    for x, y in rng.integers((8, 8), (width // 2, height // 2), (3, 2)).tolist():
+        w, h = int(rng.integers(110, 190)), int(rng.integers(80, 120))
+        cv2.rectangle(image, (x, y), (x + w, y + h), (244, 244, 246), -1)
+        cv2.rectangle(image, (x, y), (x + w, y + 10), random_ink(rng, 40, 160), -1)
+        text_lines(rng, image, y + 16, y + h, x + 6, x + w - 6)
+    return image

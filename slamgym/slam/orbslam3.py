@@ -1,0 +1,161 @@
+"""ORB-SLAM3 (Campos et al., T-RO 2021) with an RGB-D camera. The only file that imports pyorbslam3."""
+
+import os
+import stat
+import tempfile
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from slamgym.errors import SlamError
+from slamgym.geometry import from_quaternion
+from slamgym.slam.backend import SlamConfig, parse_options, untracked
+from slamgym.slam.map_tracker import MapTracker, final_trajectory
+from slamgym.slam.vocabulary import vocabulary_path
+from slamgym.types import FloatArray, Frame, IntArray, SlamTrajectory, TrackingState, TrackResult
+
+_INSTALL = "pip install pyorbslam3, and on Debian: apt install libgl1 libegl1 libopengl0 libglx0 libsm6 libice6"
+
+# The viewer is never opened, but its settings are compulsory.
+_VIEWER = [
+    *("Viewer.KeyFrameSize", "Viewer.KeyFrameLineWidth", "Viewer.GraphLineWidth", "Viewer.PointSize"),
+    *("Viewer.CameraSize", "Viewer.CameraLineWidth"),
+    *("Viewer.ViewpointX", "Viewer.ViewpointY", "Viewer.ViewpointZ", "Viewer.ViewpointF"),
+]
+
+
+class OrbSlam3Options(BaseModel):
+    """The settings of ORB-SLAM3's own files for RGB-D cameras, with their usual values."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    vocabulary: Path | None = Field(None, description="DBoW2 text file; None: the one of slamgym")
+    features: int = Field(1000, ge=100, le=20_000, description="ORB features an image")
+    scale_factor: float = Field(1.2, gt=1.0, le=2.0, description="scale between pyramid levels")
+    levels: int = Field(8, ge=1, le=16, description="pyramid levels")
+    ini_fast: int = Field(20, ge=1, le=255, description="FAST threshold tried first, grey levels")
+    min_fast: int = Field(7, ge=1, le=255, description="FAST threshold where the first finds nothing")
+    baseline: float = Field(0.07732, gt=0, description="baseline of the virtual stereo camera, metres")
+    depth_threshold: float = Field(40.0, gt=0, description="largest depth of a close point, in baselines")
+
+
+class OrbSlam3:
+    """One run of ORB-SLAM3. It has to be alone in its process: the maps are followed by what the process prints."""
+
+    Options = OrbSlam3Options
+    supports_loop_closure = True
+    has_background_threads = True
+
+    @classmethod
+    def check(cls, config: SlamConfig) -> None:
+        if find_spec("pyorbslam3") is None:
+            raise SlamError(f"slam backend 'orbslam3': the module pyorbslam3 is missing; {_INSTALL}")
+        vocabulary_path(parse_options(OrbSlam3Options, config.options).vocabulary)
+
+    def __init__(self, config: SlamConfig) -> None:
+        options = parse_options(OrbSlam3Options, config.options)
+        self._output = _OwnOutput()
+        self._slam = _start(vocabulary_path(options.vocabulary), settings(config, options))
+        self._maps = MapTracker()
+        self._first_stamp_ns: int | None = None
+        self._online: list[tuple[int, FloatArray, int]] = []
+
+    def track(self, frame: Frame) -> TrackResult:
+        # Before tracking: what the mapping threads printed since the last frame holds for this one.
+        self._maps.read(self._output.new_text())
+        answer = self._slam.track_rgbd(frame.rgb, frame.depth, self._seconds(frame.stamp_ns))
+        state, event = self._maps.update(answer.state.name)
+        if state is not TrackingState.OK:
+            return untracked(state, event, answer.num_tracked_points)
+        T_map_cam = np.asarray(answer.pose_wc, dtype=np.float64)
+        self._online.append((frame.stamp_ns, T_map_cam, self._maps.map_id))
+        return TrackResult(state, T_map_cam, self._maps.map_id, answer.num_tracked_points, event)
+
+    def finish(self) -> SlamTrajectory:
+        self._slam.shutdown()
+        if all(map_id in self._maps.thrown_away for *_, map_id in self._online):
+            return _trajectory([])  # ORB-SLAM3 crashes when it saves a trajectory without a map
+        with tempfile.TemporaryDirectory(prefix="slamgym-") as folder:
+            path = Path(folder) / "trajectory.txt"
+            self._slam.save_trajectory_euroc(str(path))
+            saved = read_saved(path.read_text(), self._first_stamp_ns or 0)
+        return final_trajectory(_trajectory(self._online), saved, self._maps.thrown_away)
+
+    def _seconds(self, stamp_ns: int) -> float:
+        """ORB-SLAM3 keeps seconds as a double: counted from the first frame they come back exact to the nanosecond."""
+        if self._first_stamp_ns is None:
+            self._first_stamp_ns = stamp_ns
+        return (stamp_ns - self._first_stamp_ns) * 1e-9
+
+
+def settings(config: SlamConfig, options: OrbSlam3Options) -> str:
+    """ORB-SLAM3's settings file, version 1.0. Depth comes in metres. Its fps is a whole number of at least 1."""
+    camera = config.camera
+    values: dict[str, Any] = {
+        "File.version": '"1.0"',
+        "Camera.type": '"PinHole"',
+        **{f"Camera1.{name}": float(getattr(camera, name)) for name in ("fx", "fy", "cx", "cy")},
+        **{f"Camera1.{k}": float(v) for k, v in zip(("k1", "k2", "p1", "p2", "k3"), camera.distortion, strict=False)},
+        "Camera.width": camera.width,
+        "Camera.height": camera.height,
+        "Camera.fps": max(1, round(config.fps)),
+        "Camera.RGB": 1,
+        "Stereo.b": options.baseline,
+        "Stereo.ThDepth": options.depth_threshold,
+        "RGBD.DepthMapFactor": 1.0,
+        "ORBextractor.nFeatures": options.features,
+        "ORBextractor.scaleFactor": options.scale_factor,
+        "ORBextractor.nLevels": options.levels,
+        "ORBextractor.iniThFAST": options.ini_fast,
+        "ORBextractor.minThFAST": options.min_fast,
+        "loopClosing": int(config.loop_closure is not False),
+        **dict.fromkeys(_VIEWER, 1.0),
+    }
+    return "\n".join(["%YAML:1.0", *(f"{key}: {value}" for key, value in values.items()), ""])
+
+
+def _start(vocabulary: Path, settings_text: str) -> Any:
+    try:
+        library = import_module("pyorbslam3")
+    except ImportError as error:
+        raise SlamError(f"slam backend 'orbslam3': pyorbslam3 cannot be loaded ({error}); {_INSTALL}") from error
+    with tempfile.TemporaryDirectory(prefix="slamgym-") as folder:
+        path = Path(folder) / "settings.yaml"
+        path.write_text(settings_text)
+        return library.Slam(vocabulary, path, library.Sensor.RGBD)
+
+
+class _OwnOutput:
+    """What this process has printed; its standard output has to be a file that can be read back."""
+
+    def __init__(self) -> None:
+        if not stat.S_ISREG(os.fstat(1).st_mode):
+            raise SlamError("slam backend 'orbslam3': expected a file as standard output; run it in a SlamSession")
+        self._read = os.fstat(1).st_size
+
+    def new_text(self) -> str:
+        """Whole lines printed since the last call."""
+        new = os.pread(1, os.fstat(1).st_size - self._read, self._read)
+        new = new[: new.rfind(b"\n") + 1]
+        self._read += len(new)
+        return new.decode(errors="replace")
+
+
+def _trajectory(frames: list[tuple[int, FloatArray, int]]) -> SlamTrajectory:
+    return SlamTrajectory(
+        stamps_ns=np.array([stamp_ns for stamp_ns, _, _ in frames], dtype=np.int64),
+        T_map_cam=np.array([T for _, T, _ in frames]).reshape(-1, 4, 4),
+        map_id=np.array([map_id for *_, map_id in frames], dtype=np.int64),
+    )
+
+
+def read_saved(text: str, first_stamp_ns: int) -> SlamTrajectory:
+    """Frames of the biggest map from ORB-SLAM3's file in EuRoC form: nanoseconds, x y z in metres, qx qy qz qw."""
+    rows = np.array([line.split() for line in text.splitlines()], dtype=np.float64).reshape(-1, 8)
+    stamps_ns: IntArray = np.rint(rows[:, 0]).astype(np.int64) + first_stamp_ns
+    T_map_cam = from_quaternion(rows[:, 1:4], rows[:, 4:8])
+    return SlamTrajectory(stamps_ns, T_map_cam, np.zeros(len(rows), dtype=np.int64))

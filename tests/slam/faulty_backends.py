@@ -1,0 +1,153 @@
+# ruff: noqa: ARG002
+"""SLAMs that misbehave, for the harness to survive. They run in the worker process."""
+
+import ctypes
+import os
+import threading
+import time
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict
+
+from slamgym.errors import SlamError
+from slamgym.slam.backend import SlamConfig
+from slamgym.types import Frame, SlamTrajectory, TrackingState, TrackResult
+
+
+class NoOptions(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class Healthy:
+    """Answers the mean grey value as its number of tracked points, so that tests see which frame it got."""
+
+    Options = NoOptions
+    supports_loop_closure = False
+    has_background_threads = False
+
+    @classmethod
+    def check(cls, config: SlamConfig) -> None:
+        pass
+
+    def __init__(self, config: SlamConfig) -> None:
+        self.stamps_ns: list[int] = []
+
+    def track(self, frame: Frame) -> TrackResult:
+        self.stamps_ns.append(frame.stamp_ns)
+        if len(self.stamps_ns) == 3:
+            self.misbehave()
+        return TrackResult(TrackingState.OK, np.eye(4), 0, int(frame.rgb.mean()))
+
+    def misbehave(self) -> None:
+        pass
+
+    def finish(self) -> SlamTrajectory:
+        n = len(self.stamps_ns)
+        return SlamTrajectory(np.array(self.stamps_ns, np.int64), np.tile(np.eye(4), (n, 1, 1)), np.zeros(n, np.int64))
+
+
+class Sleeps(Healthy):
+    def misbehave(self) -> None:
+        time.sleep(1e6)
+
+
+class HoldsGil(Healthy):
+    """Hangs as C++ code does that never gives the interpreter lock back."""
+
+    def misbehave(self) -> None:
+        ctypes.PyDLL(None).sleep(1_000_000)
+
+
+class Aborts(Healthy):
+    def misbehave(self) -> None:
+        os.abort()
+
+
+class Exits(Healthy):
+    def misbehave(self) -> None:
+        os._exit(0)
+
+
+class Raises(Healthy):
+    def misbehave(self) -> None:
+        raise ValueError("the third frame is one too many")
+
+
+class RaisesOwnError(Healthy):
+    """An error of slamgym's own that comes while tracking is a crash like any other."""
+
+    def misbehave(self) -> None:
+        raise SlamError("raised while tracking")
+
+
+class Chatters(Healthy):
+    """50 MB on the file descriptors that C++ writes to."""
+
+    def misbehave(self) -> None:
+        line = b"x" * 1023 + b"\n"
+        for _ in range(25):
+            os.write(1, line * 1024)
+            os.write(2, line * 1024)
+        os.write(1, b"the last line\n")
+
+
+class AnswersUnpicklable(Healthy):
+    def track(self, frame: Frame) -> TrackResult:
+        return lambda: None  # type: ignore[return-value]
+
+
+class AnswersNothing(Healthy):
+    def track(self, frame: Frame) -> TrackResult:
+        return None  # type: ignore[return-value]
+
+
+class LacksLibrary(Healthy):
+    def __init__(self, config: SlamConfig) -> None:
+        raise SlamError("libslam.so is missing; install it")
+
+
+class AbortsAtStart(Healthy):
+    def __init__(self, config: SlamConfig) -> None:
+        os.abort()
+
+
+class AbortsAtFinish(Healthy):
+    def finish(self) -> SlamTrajectory:
+        os.abort()
+
+
+class WorksBehind(Healthy):
+    """A thread of its own works for 0.1 s after each frame."""
+
+    has_background_threads = True
+
+    def track(self, frame: Frame) -> TrackResult:
+        threading.Thread(target=_burn_cpu, args=(0.1,)).start()
+        return super().track(frame)
+
+
+class WorksForEver(WorksBehind):
+    def track(self, frame: Frame) -> TrackResult:
+        threading.Thread(target=_burn_cpu, args=(1e6,), daemon=True).start()
+        return Healthy.track(self, frame)
+
+
+class Polls(Healthy):
+    """A thread that looks for work every 3 ms and finds none: that is idling."""
+
+    has_background_threads = True
+
+    def __init__(self, config: SlamConfig) -> None:
+        super().__init__(config)
+        threading.Thread(target=_poll, daemon=True).start()
+
+
+def _burn_cpu(seconds: float) -> None:
+    until = time.thread_time() + seconds
+    while time.thread_time() < until:
+        pass
+
+
+def _poll() -> None:
+    while True:
+        time.sleep(0.003)

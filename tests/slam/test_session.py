@@ -1,0 +1,229 @@
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from slamgym.errors import ConfigError, SlamError
+from slamgym.slam import session as session_module
+from slamgym.slam.session import SlamSession
+from slamgym.types import SlamEvent, TrackingState
+
+
+def is_alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def wait_until_gone(pid: int, limit_s: float = 5.0) -> bool:
+    deadline = time.monotonic() + limit_s
+    while is_alive(pid) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return not is_alive(pid)
+
+
+def test_healthy_run(faulty, config, frame):
+    with SlamSession(faulty("Healthy"), config) as session:
+        results = [session.track(frame(k)) for k in range(10)]
+        final = session.finish()
+    assert [r.tracked_points for r in results] == list(range(10))  # each frame's own image arrived
+    assert final.stamps_ns.tolist() == list(range(10))
+    assert (session.outcome, session.frames_tracked) == ("", 10)
+
+
+def test_groundtruth_is_relative_to_the_first_frame(config, frame):
+    with SlamSession("groundtruth", config) as session:
+        results = [session.track(frame(k)) for k in (5, 6, 8)]
+        final = session.finish()
+    assert [r.T_map_cam[0, 3] for r in results] == [0.0, 1.0, 3.0]
+    assert [r.event for r in results] == [SlamEvent.INITIALIZED, SlamEvent.NONE, SlamEvent.NONE]
+    np.testing.assert_allclose(final.T_map_cam, [r.T_map_cam for r in results])
+
+
+def test_groundtruth_without_frames(config):
+    with SlamSession("groundtruth", config) as session:
+        assert session.finish().T_map_cam.shape == (0, 4, 4)
+
+
+@pytest.mark.parametrize(
+    ("backend", "outcome"),
+    [
+        ("Sleeps", "timeout"),
+        ("HoldsGil", "timeout"),
+        ("Aborts", "crashed"),
+        ("Exits", "crashed"),
+        ("Raises", "crashed"),
+        ("RaisesOwnError", "crashed"),
+    ],
+)
+def test_fault_in_the_third_frame(faulty, config, frame, backend, outcome):
+    with SlamSession(faulty(backend), config, timeout_s=0.5) as session:
+        results = [session.track(frame(k)) for k in range(5)]
+        final = session.finish()
+        assert wait_until_gone(session.pid)
+    assert [r.state for r in results] == [TrackingState.OK] * 2 + [TrackingState.LOST] * 3
+    assert [r.event for r in results] == ["", "", outcome, "", ""]
+    assert all(np.isnan(r.T_map_cam).all() and r.map_id == -1 for r in results[2:])
+    assert (session.outcome, session.frames_tracked, len(final.stamps_ns)) == (outcome, 2, 0)
+
+
+def test_log_tells_why_it_crashed(faulty, config, frame, tmp_path):
+    with SlamSession(faulty("Raises"), config, log_path=tmp_path / "slam.log") as session:
+        for k in range(3):
+            session.track(frame(k))
+        assert "ValueError: the third frame is one too many" in session.log_tail(3)
+    assert "the third frame is one too many" in (tmp_path / "slam.log").read_text()
+
+
+def test_chatter_does_not_block(faulty, config, frame, tmp_path):
+    with SlamSession(faulty("Chatters"), config, log_path=tmp_path / "slam.log") as session:
+        results = [session.track(frame(k)) for k in range(4)]
+        assert session.log_tail(1) == "the last line"
+    assert [r.state for r in results] == [TrackingState.OK] * 4
+    assert (tmp_path / "slam.log").stat().st_size > 50e6
+
+
+@pytest.mark.parametrize(
+    ("backend", "why"), [("AnswersUnpicklable", "expected .* a TrackResult"), ("AnswersNothing", "got None")]
+)
+def test_answer_of_a_wrong_kind_is_a_crash(faulty, config, frame, backend, why):
+    with SlamSession(faulty(backend), config) as session:
+        assert session.track(frame(0)).event == SlamEvent.CRASHED
+        assert re.search(why, session.log_tail())
+
+
+def test_killed_between_frames_and_the_next_session_is_right(faulty, config, frame):
+    with SlamSession(faulty("Healthy"), config) as session:
+        session.track(frame(0))
+        os.kill(session.pid, signal.SIGKILL)
+        result = session.track(frame(1))
+        assert (result.event, session.outcome) == (SlamEvent.CRASHED, "crashed")
+    with SlamSession(faulty("Healthy"), config) as session:
+        assert session.track(frame(7)).tracked_points == 7
+
+
+def test_missing_library_is_the_users_to_solve(faulty, config):
+    session = SlamSession(faulty("LacksLibrary"), config)
+    with pytest.raises(SlamError, match="install it"):
+        session.wait_ready()
+    assert wait_until_gone(session.pid)
+
+
+def test_crash_at_start_is_an_outcome(faulty, config, frame):
+    with SlamSession(faulty("AbortsAtStart"), config) as session:
+        session.wait_ready()
+        assert session.outcome == "crashed"
+        assert [session.track(frame(k)).event for k in range(2)] == [SlamEvent.CRASHED, SlamEvent.NONE]
+
+
+def test_crash_at_finish_is_an_outcome(faulty, config, frame):
+    with SlamSession(faulty("AbortsAtFinish"), config) as session:
+        session.track(frame(0))
+        assert len(session.finish().stamps_ns) == 0
+        assert session.outcome == "crashed"
+
+
+def test_frame_of_another_size_is_refused(faulty, config, frame):
+    with SlamSession(faulty("Healthy"), config) as session:
+        good = frame(0)
+        bad = type(good)(0, good.rgb[:-1], good.depth, good.T_world_cam)
+        with pytest.raises(ConfigError, match=r"expected uint8 \(24, 32, 3\), got uint8 \(23, 32, 3\)"):
+            session.track(bad)
+        assert session.track(good).state is TrackingState.OK
+
+
+def test_lockstep_waits_for_background_threads(faulty, config, frame):
+    with SlamSession(faulty("WorksBehind"), config, "lockstep") as session:
+        for k in range(3):
+            session.track(frame(k))
+    assert session.lockstep_wait_s > 0.25
+    assert session.lockstep_overruns == 0
+
+
+def test_free_does_not_wait(faulty, config, frame):
+    with SlamSession(faulty("WorksBehind"), config, "free") as session:
+        session.wait_ready()
+        begin = time.monotonic()
+        session.track(frame(0))
+        assert time.monotonic() - begin < 0.1
+    assert session.lockstep_wait_s == 0.0
+
+
+def test_polling_counts_as_idle(faulty, config, frame):
+    with SlamSession(faulty("Polls"), config, "lockstep") as session:
+        for k in range(10):
+            session.track(frame(k))
+    assert session.lockstep_wait_s < 1.0
+
+
+def test_lockstep_wait_is_bounded(faulty, config, frame, monkeypatch):
+    monkeypatch.setattr(session_module, "LOCKSTEP_LIMIT_S", 0.2)
+    with SlamSession(faulty("WorksForEver"), config, "lockstep") as session:
+        assert session.track(frame(0)).state is TrackingState.OK
+    assert session.lockstep_overruns == 1
+
+
+def test_nothing_leaks(faulty, config, frame, children):
+    def open_files() -> int:
+        return len(list(Path("/proc/self/fd").iterdir()))
+
+    SlamSession(faulty("Healthy"), config).close()
+    with SlamSession(faulty("Healthy"), config) as session:  # starts the spawning thread
+        session.track(frame(0))
+    files, processes, shared = open_files(), children(), set(Path("/dev/shm").iterdir())
+    for backend in ("Healthy", "Aborts", "AbortsAtStart", "Raises") * 5:
+        session = SlamSession(faulty(backend), config)
+        session.start()
+        if backend != "Healthy":
+            for k in range(3):
+                session.track(frame(k))
+        session.close()
+        session.close()
+        assert not is_alive(session.pid)
+    assert open_files() == files
+    assert children() == processes
+    assert set(Path("/dev/shm").iterdir()) == shared
+
+
+def test_ctrl_c_in_the_terminal_does_not_reach_the_worker(faulty, config):
+    with SlamSession(faulty("Healthy"), config) as session:
+        session.wait_ready()
+        assert os.getsid(session.pid) != os.getsid(0)
+
+
+PARENT = """
+import sys, threading
+sys.path.insert(0, sys.argv[1])
+import numpy as np
+from slamgym.camera import PinholeCamera
+from slamgym.slam.backend import SlamConfig
+from slamgym.slam.session import SlamSession
+from slamgym.types import Frame
+
+session = SlamSession("faulty_backends:HoldsGil", SlamConfig(PinholeCamera(32, 24, 30.0, 30.0, 15.5, 11.5), 30.0))
+starter = threading.Thread(target=session.wait_ready)  # a thread that ends before the run does
+starter.start()
+starter.join()
+frame = Frame(0, np.zeros((24, 32, 3), np.uint8), np.zeros((24, 32), np.float32), np.eye(4))
+session.track(frame)
+session.track(frame)
+print(session.pid, flush=True)
+session.track(frame)
+"""
+
+
+def test_worker_dies_with_its_parent_even_while_it_hangs():
+    parent = subprocess.Popen([sys.executable, "-c", PARENT, str(Path(__file__).parent)], stdout=subprocess.PIPE)
+    with parent:
+        worker = int(parent.stdout.readline())
+        time.sleep(0.2)
+        assert is_alive(worker)
+        parent.kill()
+    assert wait_until_gone(worker)
