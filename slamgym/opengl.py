@@ -21,6 +21,14 @@ NO_EGL = (
     "cannot render: expected a working EGL with OpenGL 4.1, got: {error}; on Debian or Ubuntu: "
     "apt-get install libegl1 libgl1 libopengl0 libgl1-mesa-dri libegl-mesa0"
 )
+FORKED = (
+    "cannot render in a process that was forked from one that already has: Mesa's threads are gone here, and drawing "
+    "would hang; start it by 'spawn', for example gym.make_vec(..., vector_kwargs={'context': 'spawn'})"
+)
+
+_opened_by: int | None = None
+"""Id of the process that first used EGL: this one, or one that it was forked from."""
+
 # Positions of the vertex attributes in pyrender's buffers, and what its flat shader has to multiply.
 FLAT_SHADER = {
     "USE_METALLIC_MATERIAL": 1,
@@ -45,10 +53,14 @@ class Batch:
 class Context:
     """An OpenGL context on pyrender's EGL platform, current only while it is used, so that others can have theirs.
 
-    Raises RenderError when EGL does not work.
+    Raises RenderError when EGL does not work, or cannot work after a fork.
     """
 
     def __init__(self) -> None:
+        global _opened_by
+        if _opened_by not in (None, os.getpid()):
+            raise RenderError(FORKED)
+        _opened_by = os.getpid()
         chosen = os.environ.setdefault("PYOPENGL_PLATFORM", "egl")
         if chosen != "egl":
             raise RenderError(f"expected PYOPENGL_PLATFORM to be 'egl' or unset, got {chosen!r}; unset it")

@@ -100,6 +100,11 @@ class SlamWrapper(gym.Wrapper[Observation, NDArray[np.float32], Observation, NDA
             self._record = finish(self._session, self._fed)
         return self._record
 
+    @property
+    def slam_pid(self) -> int | None:
+        """Process id of the SLAM, None before the first reset."""
+        return self._session.pid if self._session is not None else None
+
     def slam_log_tail(self) -> str:
         """The last lines that the SLAM wrote to its standard output and error."""
         return self._session.log_tail() if self._session is not None else ""

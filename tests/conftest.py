@@ -32,3 +32,10 @@ def children():
         return found - {os.getpid()}
 
     return descendants
+
+
+@pytest.fixture
+def faulty(monkeypatch):
+    """Name of a backend in faulty_backends.py, for SlamSession; the worker inherits the import path."""
+    monkeypatch.syspath_prepend(str(Path(__file__).parent / "slam"))
+    return lambda name: f"faulty_backends:{name}"

@@ -1,3 +1,6 @@
+import subprocess
+import sys
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -126,7 +129,8 @@ def test_spec_recreates_it(env):
 
 @pytest.mark.parametrize("mode", ["sync", "async"])
 def test_vector_environments(mode, env):
-    vector = gym.make_vec("HomeRobot-v0", num_envs=2, vectorization_mode=mode, **SMALL)
+    started = {"vector_kwargs": {"context": "spawn"}} if mode == "async" else {}
+    vector = gym.make_vec("HomeRobot-v0", num_envs=2, vectorization_mode=mode, **started, **SMALL)
     obs, _ = vector.reset(seed=[7, 8])
     alone, _ = env.reset(seed=8)
     assert np.array_equal(obs["rgb"][1], alone["rgb"])
@@ -135,6 +139,24 @@ def test_vector_environments(mode, env):
     assert reward.shape == (2,)
     assert info["T_world_cam"].shape == (2, 4, 4)
     vector.close()
+
+
+FORKING = """
+import gymnasium as gym, numpy as np, slamgym
+PARAMS = {"camera": "small", "path_length_m": 2.0}
+vector = gym.make_vec("HomeRobot-v0", num_envs=2, vectorization_mode="async", **PARAMS)
+print(vector.reset(seed=1)[0]["rgb"].mean() > 0)
+vector.close()
+gym.make("HomeRobot-v0", **PARAMS).reset()
+vector = gym.make_vec("HomeRobot-v0", num_envs=2, vectorization_mode="async", **PARAMS)
+vector.reset(seed=1)
+"""
+
+
+def test_forked_environments_work_unless_the_parent_has_rendered():
+    result = subprocess.run([sys.executable, "-c", FORKING], capture_output=True, text=True, timeout=120)
+    assert result.stdout.strip() == "True"
+    assert "RenderError: cannot render in a process that was forked" in result.stderr
 
 
 def test_records_a_video(tmp_path):

@@ -82,10 +82,10 @@ def test_info_keeps_its_types_and_holds_no_wall_clock():
     env.close()
 
 
-def test_tracking_reward_counts_untracked_frames(faulty_backend):
+def test_tracking_reward_counts_untracked_frames(faulty):
     rewards = {}
     for reward in ("progress", "tracking"):
-        env = make(slam=faulty_backend("LosesEveryThird"), reward=reward)
+        env = make(slam=faulty("LosesEveryThird"), reward=reward)
         steps = list(steps_of(env))
         env.close()
         rewards[reward] = np.array([reward for _, reward, _, _ in steps[1:]])
@@ -114,8 +114,8 @@ def test_killed_slam_ends_the_episode_and_the_next_one_is_right():
     env.close()
 
 
-def test_hanging_slam_ends_with_timeout(faulty_backend):
-    env = make(slam=faulty_backend("SleepsForever"), slam_timeout_s=0.5)
+def test_hanging_slam_ends_with_timeout(faulty):
+    env = make(slam=faulty("Sleeps"), slam_timeout_s=0.5)
     *_, (_, _, done, info) = steps_of(env)
     assert done
     assert info["episode_slam"]["status"] == "timeout"
@@ -135,7 +135,9 @@ def test_no_process_outlives_the_environment(children):
 
 @pytest.mark.parametrize("mode", ["sync", "async"])
 def test_vector_environments(mode):
-    vector = gym.make_vec("HomeRobotSLAM-v0", num_envs=2, vectorization_mode=mode, **SMALL)
+    # A process that has rendered cannot be forked into one that renders.
+    started = {"vector_kwargs": {"context": "spawn"}} if mode == "async" else {}
+    vector = gym.make_vec("HomeRobotSLAM-v0", num_envs=2, vectorization_mode=mode, **started, **SMALL)
     obs, info = vector.reset(seed=[7, 8])
     for _ in range(5):
         obs, _, _, _, info = vector.step(np.full((2, 2), [1.0, 0.0], np.float32))

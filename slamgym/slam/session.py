@@ -10,7 +10,7 @@ from typing import IO, Any, Literal, Self
 import numpy as np
 
 from slamgym.errors import SlamgymError
-from slamgym.slam.backend import SlamConfig, check_config, load_backend, untracked
+from slamgym.slam.backend import BACKENDS, SlamConfig, check_config, load_backend, untracked
 from slamgym.slam.frame_buffer import FrameBuffer
 from slamgym.slam.idle import check_lockstep_possible, wait_until_idle
 from slamgym.slam.process import WorkerProcess
@@ -52,7 +52,7 @@ class SlamSession:
         self._lockstep = sync == "lockstep" and self._has_threads
         if self._lockstep:
             check_lockstep_possible()
-        self._backend = backend
+        self._backend = BACKENDS.get(backend, backend)  # the worker does not know names that a user registered
         self._config = config
         self._timeout_s = timeout_s
         self._log_path = log_path

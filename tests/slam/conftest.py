@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -8,13 +6,6 @@ from slamgym.slam.backend import SlamConfig
 from slamgym.types import Frame
 
 TINY = PinholeCamera(32, 24, 30.0, 30.0, 15.5, 11.5)
-
-
-@pytest.fixture
-def faulty(monkeypatch):
-    """Name of a backend in faulty_backends.py, for SlamSession; the worker inherits the import path."""
-    monkeypatch.syspath_prepend(str(Path(__file__).parent))
-    return lambda name: f"faulty_backends:{name}"
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from slamgym.errors import SlamError
-from slamgym.slam.backend import SlamConfig
+from slamgym.slam.backend import SlamConfig, untracked
 from slamgym.types import Frame, SlamTrajectory, TrackingState, TrackResult
 
 
@@ -151,3 +151,9 @@ def _burn_cpu(seconds: float) -> None:
 def _poll() -> None:
     while True:
         time.sleep(0.003)
+
+
+class LosesEveryThird(Healthy):
+    def track(self, frame: Frame) -> TrackResult:
+        result = super().track(frame)
+        return untracked(TrackingState.LOST) if len(self.stamps_ns) % 3 == 0 else result
