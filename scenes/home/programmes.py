@@ -141,9 +141,9 @@ def _work_place(room: Furnisher) -> None:
 
 
 def _bathroom(room: Furnisher) -> None:
-    tub = room.stand(bathroom.bath) or room.stand(bathroom.shower)
-    basin = room.stand(bathroom.washbasin)
     room.stand(bathroom.toilet)
+    basin = room.stand(bathroom.washbasin)
+    tub = room.stand(bathroom.bath) or room.stand(bathroom.shower)
     for item in basin:
         mirror = room.make(bathroom.mirror_cabinet)
         room.layout.put(item.beside(mirror, 0.0, -0.01, 1.2))

@@ -132,5 +132,5 @@ def hood(palette: Palette, _: np.random.Generator) -> Piece:
     )
 
 
-BASE_UNITS: tuple[Callable[[Palette, np.random.Generator], Piece], ...] = (sink, cupboard, oven, cupboard, cupboard)
+BASE_UNITS: tuple[Callable[[Palette, np.random.Generator], Piece], ...] = (sink, oven, cupboard, cupboard, cupboard)
 """The row along the wall after the fridge, as far as there is room."""
