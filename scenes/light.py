@@ -48,15 +48,23 @@ class Samples:
 
 
 def bake_light(house: House) -> House:
-    """The house with `light` in every part, float32 (V, 3) in [0.25, 1.1], and large faces subdivided to carry it."""
-    parts = [subdivide(split_creases(part), MAX_EDGE_M) for part in house.parts if len(part.faces)]
+    """The house with `light` in every part, float32 (V, 3) in [0.25, 1.1], and large faces subdivided to carry it.
+
+    Parts that have their light already, such as windows and bulbs, shine: they keep it.
+    """
+    parts = [_refined(part) for part in house.parts if len(part.faces)]
     if not parts:
         return replace(house, parts=())
     samples = _samples(parts)
     light = _compress(_irradiance(samples, house.lamps, _Rays(parts)))[samples.of_vertex].astype(np.float32)
     ends = np.cumsum([len(part.vertices) for part in parts])
-    lit = (replace(part, light=piece) for part, piece in zip(parts, np.split(light, ends[:-1]), strict=True))
+    pieces = zip(parts, np.split(light, ends[:-1]), strict=True)
+    lit = (part if part.light is not None else replace(part, light=piece) for part, piece in pieces)
     return replace(house, parts=tuple(lit))
+
+
+def _refined(part: Part) -> Part:
+    return part if part.light is not None else subdivide(split_creases(part), MAX_EDGE_M)
 
 
 def _samples(parts: list[Part]) -> Samples:

@@ -36,10 +36,14 @@ def house_images(seed: int, count: int = IMAGES_PER_HOUSE) -> Iterator[NDArray[n
 
 
 def train_on_houses(seeds: range = TRAINING_SEEDS, images_per_house: int = IMAGES_PER_HOUSE) -> Vocabulary:
-    """Vocabulary from rendered houses; takes some minutes for all of them."""
+    """Vocabulary from rendered houses; takes about a minute for all of them."""
     return train([image_descriptors(rgb) for seed in seeds for rgb in house_images(seed, images_per_house)])
 
 
 def write_packed(vocabulary: Vocabulary, path: Path = PACKED) -> None:
     """Write the text format, xz-compressed: by default over the vocabulary that comes with slamgym."""
     path.write_bytes(lzma.compress(vocabulary.to_text().encode(), preset=9 | lzma.PRESET_EXTREME))
+
+
+if __name__ == "__main__":
+    write_packed(train_on_houses())

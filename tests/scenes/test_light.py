@@ -178,3 +178,10 @@ def test_texture_coordinates_are_interpolated() -> None:
 def _affine(vertices: NDArray[np.float32]) -> FloatArray:
     uv: FloatArray = vertices @ np.array([[1.0, 0.5], [-0.3, 2.0], [0.7, 0.1]]) + 0.25
     return uv
+
+
+def test_what_shines_keeps_its_light() -> None:
+    window = replace(box("window", (-1.9, -0.5, 1), (-1.8, 0.5, 2)), light=np.ones((8, 3), np.float32))
+    shining = bake_light(room(window)).parts[1]
+    assert np.array_equal(shining.vertices, window.vertices)
+    assert (shining.light == 1.0).all()
