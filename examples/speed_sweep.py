@@ -19,10 +19,11 @@ def main(
     speeds: tuple[float, ...] = (0.2, 0.8, 1.6),
     scene: str = "procedural",
     path_length_m: float = 10.0,
-    out: Path = Path("out") / f"speed_sweep-{datetime.now():%Y%m%d-%H%M%S}",
+    out: Path | None = None,
 ) -> None:
-    """Drive the path that each of `seeds` picks in `scene` at each of `speeds` (m/s)."""
+    """Drive the path that each of `seeds` picks in `scene` at each of `speeds` (m/s). out: a new folder."""
     console = Console()
+    out = out or Path("out") / f"speed_sweep-{datetime.now():%Y%m%d-%H%M%S}"
     check_free(out)
     episodes: list[Episode] = []
     try:

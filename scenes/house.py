@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Material:
-    """How a surface looks. colour: linear factors in [0, 1]; texture: uint8 (H, W, 3) sRGB, repeated over uv, or None."""
+    """How a surface looks. colour: factors in [0, 1]. texture: uint8 (H, W, 3), sRGB, repeated over uv, or None."""
 
     name: str
     colour: tuple[float, float, float] = (1.0, 1.0, 1.0)

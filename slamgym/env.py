@@ -16,7 +16,7 @@ from slamgym.eval.drive import summarize_drive
 from slamgym.geometry import mast_camera_pose
 from slamgym.params import DriveParams, SlamParams, split_params
 from slamgym.render import Renderer
-from slamgym.robot import ROBOT_HEIGHT, ROBOT_RADIUS, DifferentialDrive, RobotState
+from slamgym.robot import ROBOT_HEIGHT, ROBOT_RADIUS, DifferentialDrive
 from slamgym.scenes.house import House
 from slamgym.scenes.light import bake_light
 from slamgym.scenes.occupancy import OccupancyGrid, free_space, occupancy_grid
@@ -50,8 +50,8 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
     Action: Box(2) in [-1, 1]: forward speed (below 0: reverse) and turn rate (above 0: left), scaled by the parameters.
     Observation: `rgb` uint8 (H, W, 3), `depth` float32 (H, W) in metres along the optical axis with 0 = no measurement,
     `waypoints` float32 (5, 2): the next points of the path, 0.2 m apart, in the robot's frame (x forward, y left).
-    Info: `stamp_ns`, `T_world_cam` (4, 4), `robot` (x, y, yaw), `speed_mps`, `yaw_rate_radps`, `progress_m`, `path_length_m`,
-    `distance_m`, `collision`.
+    Info: `stamp_ns`, `T_world_cam` (4, 4), `robot` (x, y, yaw), `speed_mps`, `yaw_rate_radps`, `progress_m`,
+    `path_length_m`, `distance_m`, `collision`.
 
     The reset seed picks the path only; `reset(options={"tour": "round_trip"})` plans one that returns to its start.
     Raises ConfigError for a bad parameter, SceneError and RenderError at the first reset.
@@ -163,8 +163,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         """T_world_cam at a fraction of the way from the last step's state (0) to this one's (1)."""
         before, now = self._before, self._state
         x, y, yaw = (
-            (1 - fraction) * a + fraction * b
-            for a, b in ((before.x, now.x), (before.y, now.y), (before.yaw, now.yaw))
+            (1 - fraction) * a + fraction * b for a, b in ((before.x, now.x), (before.y, now.y), (before.yaw, now.yaw))
         )
         return mast_camera_pose(x, y, yaw, self.params.camera_height)
 

@@ -34,7 +34,8 @@ class Renderer:
     """Renders one house through one camera. Opens an OpenGL context of its own; `close` frees it.
 
     lighting: "baked" multiplies materials with `Part.light`; "flat" shows the materials alone.
-    Raises ConfigError for an unknown lighting or a camera with distortion, RenderError when the light is not baked or EGL does not work.
+    Raises ConfigError for an unknown lighting or a camera with distortion, RenderError when the light is not baked or
+    EGL does not work.
     """
 
     def __init__(self, house: House, camera: PinholeCamera, lighting: str = "baked") -> None:

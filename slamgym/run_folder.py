@@ -1,12 +1,12 @@
 """A run folder: everything about one episode, in files that other tools read, complete or not there at all.
 
-    config.yaml      all parameters, as they were resolved
-    episode.json     the results, the keys of `info["episode_slam"]` at the top level
-    groundtruth.txt  true poses of the camera's optical frame at every rendered frame, TUM format
-    estimate.txt     the SLAM's final poses in the evaluated map, TUM format
-    frames.csv       one row a rendered frame: motion of the robot, and the SLAM's answer where the frame was fed
-    map.png          seen from above: grid, planned and true path, aligned estimate, losses
-    slam.log         the last lines that the SLAM wrote
+config.yaml      all parameters, as they were resolved
+episode.json     the results, the keys of `info["episode_slam"]` at the top level
+groundtruth.txt  true poses of the camera's optical frame at every rendered frame, TUM format
+estimate.txt     the SLAM's final poses in the evaluated map, TUM format
+frames.csv       one row a rendered frame: motion of the robot, and the SLAM's answer where the frame was fed
+map.png          seen from above: grid, planned and true path, aligned estimate, losses
+slam.log         the last lines that the SLAM wrote
 """
 
 import json
@@ -61,7 +61,9 @@ def write_run(episode: Episode, folder: Path) -> Path:
             shutil.rmtree(draft, ignore_errors=True)
             raise
     except OSError as error:
-        raise OutputError(f"output folder: writing {folder} failed ({error.strerror}); free space or name another") from None
+        raise OutputError(
+            f"output folder: writing {folder} failed ({error.strerror}); free space or name another"
+        ) from None
     return folder
 
 

@@ -20,7 +20,9 @@ from slamgym.slam.session import SlamSession
 from slamgym.types import Frame, SlamEvent, SlamRecord, Summary, TrackingState
 
 
-class SlamWrapper(gym.Wrapper[Observation, NDArray[np.float32], Observation, NDArray[np.float32]], RecordConstructorArgs):
+class SlamWrapper(
+    gym.Wrapper[Observation, NDArray[np.float32], Observation, NDArray[np.float32]], RecordConstructorArgs
+):
     """Every (stride + 1)-th frame goes to the SLAM, with its true stamp, before `step` returns.
 
     Without keywords the parameters are those that `gym.make` was given; else they are the fields of `SlamParams`.
