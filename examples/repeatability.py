@@ -3,7 +3,7 @@
 import multiprocessing
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Literal
+from typing import Any, Literal
 
 import gymnasium as gym
 import pandas as pd
@@ -43,7 +43,7 @@ def main(
     print(table.groupby(["sync", "busy loops"])["ATE m"].describe()[["count", "min", "50%", "max"]].to_string())
 
 
-def drive(seed: int, **params: object) -> list[Frame]:
+def drive(seed: int, **params: Any) -> list[Frame]:
     """All frames of one drive, rendered once."""
     env = gym.make("HomeRobot-v0", **params)
     agent = PathFollower()
@@ -58,7 +58,7 @@ def drive(seed: int, **params: object) -> list[Frame]:
     return frames
 
 
-def run(config: SlamConfig, sync: Literal["lockstep", "free"], frames: list[Frame]) -> dict[str, object]:
+def run(config: SlamConfig, sync: Literal["lockstep", "free"], frames: list[Frame]) -> dict[str, Any]:
     """One row of the table."""
     with SlamSession("orbslam3", config, sync) as session:
         summary = summarize_slam(run_sequence(session, frames))

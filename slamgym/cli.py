@@ -1,7 +1,7 @@
 """The command line: parses, prints, exits. Nothing else in slamgym prints or exits."""
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, make_dataclass
 from pathlib import Path
 from types import NoneType
@@ -69,7 +69,7 @@ class Run:
     max_episode_steps: Annotated[int, tyro.conf.arg(help="frames after which the episode is cut off")] = 10_000
 
 
-COMMANDS = {"run": Run}
+COMMANDS: dict[str, Callable[..., Run]] = {"run": Run}
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -1,7 +1,7 @@
 """`HomeRobot-v0`: a home robot with an RGB-D camera that drives through a house."""
 
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -23,7 +23,7 @@ from slamgym.scenes.occupancy import OccupancyGrid, free_space, occupancy_grid
 from slamgym.scenes.registry import check_scene, load_scene
 from slamgym.types import FloatArray, Summary
 
-Observation = dict[str, NDArray[Any]]
+Observation = dict[str, Any]
 Info = dict[str, Any]
 
 TOURS = ("one_way", "round_trip")
@@ -57,7 +57,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
     Raises ConfigError for a bad parameter, SceneError and RenderError at the first reset.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 30}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 30}  # noqa: RUF012  Gymnasium's form
 
     def __init__(self, render_mode: str | None = None, **params: Any) -> None:
         if render_mode not in (None, "rgb_array"):
@@ -92,7 +92,8 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         if self._renderer is None or self._robot is None:
             self._renderer = Renderer(house, self.params.camera, self.params.lighting)
             self._robot = DifferentialDrive(house)
-        self._state = self._before = self._robot.reset(*self.path.xy[0], self.path.heading_at(0.0))
+        x, y = self.path.xy[0]
+        self._state = self._before = self._robot.reset(x, y, self.path.heading_at(0.0))
         self._step = 0
         self._progress = 0.0
         self._distance = 0.0
@@ -116,7 +117,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         self._last = self._observe()
         return self._last, self._progress - progress_before, terminated, False, self._info()
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """The colour image of the last observation, uint8 (H, W, 3), when `render_mode` is "rgb_array"."""
         return self._last["rgb"].copy() if self.render_mode == "rgb_array" else None
 

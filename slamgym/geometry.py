@@ -1,7 +1,5 @@
 """Rigid transforms as (..., 4, 4) arrays; all arithmetic is SciPy's."""
 
-from typing import cast
-
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -14,30 +12,30 @@ R_BODY_OPTICAL: FloatArray = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, 
 
 def inverse(T: FloatArray) -> FloatArray:
     """Inverse of rigid transforms (..., 4, 4)."""
-    return cast(FloatArray, RigidTransform.from_matrix(T).inv().as_matrix())
+    return RigidTransform.from_matrix(T).inv().as_matrix()
 
 
 def from_quaternion(translation: ArrayLike, quaternion_xyzw: ArrayLike) -> FloatArray:
     """Transforms (N, 4, 4) from translations (N, 3), metres, and quaternions (N, 4) in the order x, y, z, w."""
     rotation = Rotation.from_quat(np.asarray(quaternion_xyzw, dtype=np.float64))
     T = RigidTransform.from_components(np.asarray(translation, dtype=np.float64), rotation)
-    return cast(FloatArray, T.as_matrix())
+    return T.as_matrix()
 
 
 def quaternion_xyzw(T: FloatArray) -> FloatArray:
     """Unit quaternions (..., 4) in the order x, y, z, w of transforms (..., 4, 4)."""
-    return cast(FloatArray, Rotation.from_matrix(T[..., :3, :3]).as_quat())
+    return Rotation.from_matrix(T[..., :3, :3]).as_quat()
 
 
 def rotation_angle(T: FloatArray) -> FloatArray:
     """Rotation angles (...), radians in [0, pi], of transforms (..., 4, 4)."""
-    return cast(FloatArray, Rotation.from_matrix(T[..., :3, :3]).magnitude())
+    return np.asarray(Rotation.from_matrix(T[..., :3, :3]).magnitude())
 
 
 def planar_pose(x: float, y: float, yaw: float, z: float = 0.0) -> FloatArray:
     """T_world_body (4, 4) of a body at (x, y, z), metres, turned by yaw, radians, about the vertical axis."""
     rotation = Rotation.from_euler("z", yaw)
-    return cast(FloatArray, RigidTransform.from_components([x, y, z], rotation).as_matrix())
+    return RigidTransform.from_components([x, y, z], rotation).as_matrix()
 
 
 def mast_camera_pose(x: float, y: float, yaw: float, camera_height: float) -> FloatArray:

@@ -57,7 +57,7 @@ class SlamWrapper(
         self._logs: tempfile.TemporaryDirectory[str] | None = None
         self._session: SlamSession | None = None
         self._next_session: SlamSession | None = None
-        self._sessions_made = 0
+        self._sessions_made: int = 0
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, Info]:
         if self._session is not None:

@@ -1,7 +1,10 @@
 import os
+from collections import Counter
 from pathlib import Path
 
 import pytest
+
+from slamgym.slam.session import SlamSession
 
 
 @pytest.fixture(scope="session")
@@ -39,3 +42,26 @@ def faulty(monkeypatch):
     """Name of a backend in faulty_backends.py, for SlamSession; the worker inherits the import path."""
     monkeypatch.syspath_prepend(str(Path(__file__).parent / "slam"))
     return lambda name: f"faulty_backends:{name}"
+
+
+FRAMES_FED: Counter[str] = Counter()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _count_frames():
+    """Count the frames that each backend really answered in this process, for the line below the results."""
+    close = SlamSession.close
+
+    def counting_close(session: SlamSession) -> None:
+        FRAMES_FED[session.backend] += session.frames_tracked
+        session.frames_tracked = 0
+        close(session)
+
+    SlamSession.close = counting_close
+    yield
+    SlamSession.close = close
+
+
+def pytest_terminal_summary(terminalreporter):
+    frames = FRAMES_FED["slamgym.slam.orbslam3:OrbSlam3"]
+    terminalreporter.write_line(f"real ORB-SLAM3 frames run in this process: {frames}")

@@ -52,7 +52,8 @@ class SlamSession:
         self._lockstep = sync == "lockstep" and self._has_threads
         if self._lockstep:
             check_lockstep_possible()
-        self._backend = BACKENDS.get(backend, backend)  # the worker does not know names that a user registered
+        self.backend = BACKENDS.get(backend, backend)
+        """As "module:class": the worker does not know names that a user registered."""
         self._config = config
         self._timeout_s = timeout_s
         self._log_path = log_path
@@ -82,7 +83,7 @@ class SlamSession:
         self._frames = FrameBuffer(self._config.camera)
         self._worker = WorkerProcess(self._frames.fd, self._log)
         with suppress(ConnectionError):  # waiting for the answer will tell
-            self._worker.send("start", self._backend, self._config)
+            self._worker.send("start", self.backend, self._config)
 
     def wait_ready(self) -> None:
         """Block until the SLAM can take frames. Raises the SlamError of a backend that says what it lacks."""

@@ -27,7 +27,7 @@ from slamgym.slam.orbslam3 import OrbSlam3Options, settings
 from slamgym.slam.vocabulary import vocabulary_path
 
 SEED = 7
-PARAMS = {"speed": 0.4, "path_length_m": 6.0}
+PARAMS: dict[str, Any] = {"speed": 0.4, "path_length_m": 6.0}
 WARM_UP = 30
 """Frames left out of the medians: initialisation and first use."""
 

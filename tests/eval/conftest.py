@@ -17,7 +17,7 @@ def drive(n: int) -> FloatArray:
     """True poses (n, 4, 4) of a curved drive: 0.1 m and 0.05 rad a frame."""
     yaw = 0.05 * np.arange(n)
     xy = np.cumsum(0.1 * np.column_stack([np.cos(yaw), np.sin(yaw)]), axis=0)
-    return np.array([mast_camera_pose(*xy[i], yaw[i], 1.0) for i in range(n)]).reshape(n, 4, 4)
+    return np.array([mast_camera_pose(xy[i, 0], xy[i, 1], yaw[i], 1.0) for i in range(n)]).reshape(n, 4, 4)
 
 
 @pytest.fixture(scope="session")

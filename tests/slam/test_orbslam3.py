@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -32,6 +33,12 @@ def read_list(path: Path) -> list[tuple[int, Path]]:
     return [(round(float(stamp) * 1e6) * 1000, path.parent / name) for stamp, name in lines]
 
 
+def read_image(path: Path) -> Any:
+    image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    assert image is not None
+    return image
+
+
 @pytest.fixture(scope="module")
 def real_frames(shared_data) -> list[Frame]:
     folder = shared_data / "tum_fr1_xyz_100"
@@ -44,8 +51,8 @@ def real_frames(shared_data) -> list[Frame]:
         frames.append(
             Frame(
                 stamp_ns=stamp_ns,
-                rgb=np.ascontiguousarray(cv2.imread(str(rgb_path))[..., ::-1]),
-                depth=(cv2.imread(str(depth_path), cv2.IMREAD_UNCHANGED) / 5000).astype(np.float32),
+                rgb=cv2.cvtColor(read_image(rgb_path), cv2.COLOR_BGR2RGB),
+                depth=(read_image(depth_path) / 5000).astype(np.float32),
                 T_world_cam=truth.T[np.abs(truth.stamps_ns - stamp_ns).argmin()],
             )
         )

@@ -1,0 +1,80 @@
+import json
+
+import gymnasium as gym
+import numpy as np
+import pytest
+import yaml
+
+import slamgym  # noqa: F401  registers the environments
+from slamgym.agents import PathFollower
+from slamgym.errors import OutputError
+from slamgym.eval.align import align_rigid
+from slamgym.eval.trajectory import read_tum
+from slamgym.rollout import EpisodeInterrupted, run_episode
+from slamgym.run_folder import write_run
+
+
+@pytest.fixture(scope="module")
+def episode():
+    env = gym.make("HomeRobotSLAM-v0", speed=0.4, path_length_m=3.0)
+    yield run_episode(env, PathFollower(), seed=7)
+    env.close()
+
+
+def test_real_orbslam3_tracks_a_drive_through_a_house(episode):
+    assert episode.summary["status"] == "ok"
+    assert episode.summary["completion"] == 1.0
+    assert 0.0 < episode.summary["ate_rmse_m"] < 0.05
+    assert 0.0 < episode.summary["ate_online_rmse_m"] < 0.05
+    assert 0.0 < episode.summary["rpe_step_trans_rmse_m"] < 0.02
+    assert episode.summary["tracked_points_median"] > 100
+    assert episode.summary["frames_fed"] == len(episode.steps)
+
+
+def test_run_folder_says_the_same_as_the_episode(episode, tmp_path):
+    folder = write_run(episode, tmp_path / "run")
+    written = json.loads((folder / "episode.json").read_text())
+    assert written["ate_rmse_m"] == episode.summary["ate_rmse_m"]
+    assert written["time_to_first_loss_s"] is None  # NaN has no place in JSON
+    truth, estimate = read_tum(folder / "groundtruth.txt"), read_tum(folder / "estimate.txt")
+    at = np.searchsorted(truth.stamps_ns, estimate.stamps_ns)
+    assert np.array_equal(truth.stamps_ns[at], estimate.stamps_ns)
+    T = align_rigid(estimate.positions, truth.positions[at])
+    errors = estimate.positions @ T[:3, :3].T + T[:3, 3] - truth.positions[at]
+    assert np.sqrt((errors**2).sum(axis=1).mean()) == pytest.approx(written["ate_rmse_m"], abs=1e-7)
+    # Optical frame: the camera's y axis points down.
+    assert truth.T[:, 2, 1] == pytest.approx(-1.0)
+
+
+def test_a_written_config_repeats_the_drive(episode, tmp_path):
+    config = yaml.safe_load((write_run(episode, tmp_path / "run") / "config.yaml").read_text())
+    seed, env_id = config.pop("seed"), config.pop("env_id")
+    env = gym.make(env_id, **{**config, "slam": "groundtruth"})
+    again = run_episode(env, PathFollower(), seed)
+    env.close()
+    assert np.array_equal(again.T_world_cam, episode.T_world_cam)
+
+
+def test_existing_results_are_never_overwritten(episode, tmp_path):
+    write_run(episode, tmp_path / "run")
+    with pytest.raises(OutputError, match="new or empty"):
+        write_run(episode, tmp_path / "run")
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
+def test_interrupt_hands_over_what_was_driven(tmp_path):
+    class Impatient(PathFollower):
+        def act(self, obs, info):
+            if info["progress_m"] > 0.3:
+                raise KeyboardInterrupt
+            return super().act(obs, info)
+
+    env = gym.make("HomeRobotSLAM-v0", camera="small", slam="groundtruth")
+    with pytest.raises(EpisodeInterrupted) as interrupted:
+        run_episode(env, Impatient(), seed=1)
+    env.close()
+    episode = interrupted.value.episode
+    assert episode.interrupted
+    assert 0.3 < episode.summary["progress_m"] < 0.4
+    assert episode.summary["frames_fed"] == len(episode.steps)
+    assert write_run(episode, tmp_path / "run").name == "run.interrupted"
