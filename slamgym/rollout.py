@@ -124,7 +124,7 @@ def _episode(
         path_xy=robot.path.xy,
         grid=robot.grid,
         slam=env.get_wrapper_attr("slam_record")() if with_slam else None,
-        slam_log=env.get_wrapper_attr("slam_log_tail")() if with_slam else "",
+        slam_log=env.get_wrapper_attr("slam_log")() if with_slam else "",
         summary={
             "seed": seed,
             **summary,

@@ -6,7 +6,7 @@ groundtruth.txt  true poses of the camera's optical frame at every rendered fram
 estimate.txt     the SLAM's final poses in the evaluated map, TUM format
 frames.csv       one row a rendered frame: motion of the robot, and the SLAM's answer where the frame was fed
 map.png          seen from above: grid, planned and true path, aligned estimate, losses
-slam.log         the last lines that the SLAM wrote
+slam.log         what the SLAM printed, the last MiB of it
 """
 
 import json

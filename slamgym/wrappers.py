@@ -19,6 +19,8 @@ from slamgym.slam.record import Fed, feed, finish
 from slamgym.slam.session import SlamSession
 from slamgym.types import Frame, SlamEvent, SlamRecord, Summary, TrackingState
 
+LOG_LINES = 100_000
+
 
 class SlamWrapper(
     gym.Wrapper[Observation, NDArray[np.float32], Observation, NDArray[np.float32]], RecordConstructorArgs
@@ -107,9 +109,9 @@ class SlamWrapper(
         """Process id of the SLAM, None before the first reset."""
         return self._session.pid if self._session is not None else None
 
-    def slam_log_tail(self) -> str:
-        """The last lines that the SLAM wrote to its standard output and error."""
-        return self._session.log_tail() if self._session is not None else ""
+    def slam_log(self) -> str:
+        """What the SLAM wrote to its standard output and error, the last MiB of it."""
+        return self._session.log_tail(lines=LOG_LINES) if self._session is not None else ""
 
     def close(self) -> None:
         for session in (self._session, self._next_session):

@@ -25,7 +25,7 @@ LOCKSTEP_LIMIT_S = 5.0
 START_FINISH_TIMEOUT_S = 120.0
 """Loading a large vocabulary or a last bundle adjustment may take this long."""
 
-_TAIL_BYTES = 8192
+_TAIL_BYTES = 2**20
 
 
 class SlamSession:
