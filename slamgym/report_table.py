@@ -15,9 +15,9 @@ COLUMNS: dict[str, tuple[str, str]] = {
     "status": ("status", "{}"),
     "ATE\nm": ("ate_rmse_m", "{:.4f}"),
     "RPE 1\nm": ("rpe_step_trans_rmse_m", "{:.4f}"),
-    "RPE all\nm": ("rpe_trans_rmse_m", "{:.4f}"),
-    "RPE all\ndeg": ("rpe_rot_mean_deg", "{:.2f}"),
-    "com-\npletion": ("completion", "{:.1%}"),
+    "RPE\nall m": ("rpe_trans_rmse_m", "{:.4f}"),
+    "RPE\nall °": ("rpe_rot_mean_deg", "{:.2f}"),
+    "com-\nplete": ("completion", "{:.1%}"),
     "losses": ("loss_count", "{}"),
     "driven\nm": ("distance_m", "{:.1f}"),
 }
@@ -27,7 +27,7 @@ RPE 1 is over one fed frame, RPE all over all steps."""
 
 def episode_table(episodes: Sequence[Episode]) -> Table:
     """A table with one row an episode."""
-    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    table = Table(box=SIMPLE_HEAD, padding=0)
     for heading in COLUMNS:
         table.add_column(heading, justify="right", no_wrap=True)
     for episode in episodes:
