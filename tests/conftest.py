@@ -1,6 +1,7 @@
 import os
 from collections import Counter
 from pathlib import Path
+from weakref import WeakSet
 
 import pytest
 
@@ -51,10 +52,12 @@ FRAMES_FED: Counter[str] = Counter()
 def _count_frames():
     """Count the frames that each backend really answered in this process, for the line below the results."""
     close = SlamSession.close
+    counted: WeakSet[SlamSession] = WeakSet()
 
     def counting_close(session: SlamSession) -> None:
-        FRAMES_FED[session.backend] += session.frames_tracked
-        session.frames_tracked = 0
+        if session not in counted:
+            counted.add(session)
+            FRAMES_FED[session.backend] += session.frames_tracked
         close(session)
 
     SlamSession.close = counting_close

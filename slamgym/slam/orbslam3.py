@@ -2,11 +2,12 @@
 
 import os
 import stat
-import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
@@ -79,10 +80,9 @@ class OrbSlam3:
         self._slam.shutdown()
         if all(map_id in self._maps.thrown_away for *_, map_id in self._online):
             return _trajectory([])  # ORB-SLAM3 crashes when it saves a trajectory without a map
-        with tempfile.TemporaryDirectory(prefix="slamgym-") as folder:
-            path = Path(folder) / "trajectory.txt"
-            self._slam.save_trajectory_euroc(str(path))
-            saved = read_saved(path.read_text(), self._first_stamp_ns or 0)
+        with _memory_file() as (file, path):
+            self._slam.save_trajectory_euroc(path)
+            saved = read_saved(file.read().decode(), self._first_stamp_ns or 0)
         return final_trajectory(_trajectory(self._online), saved, self._maps.thrown_away)
 
     def _seconds(self, stamp_ns: int) -> float:
@@ -123,10 +123,16 @@ def _start(vocabulary: Path, settings_text: str) -> Any:
         library = import_module("pyorbslam3")
     except ImportError as error:
         raise SlamError(f"slam backend 'orbslam3': pyorbslam3 cannot be loaded ({error}); {_INSTALL}") from error
-    with tempfile.TemporaryDirectory(prefix="slamgym-") as folder:
-        path = Path(folder) / "settings.yaml"
-        path.write_text(settings_text)
+    with _memory_file() as (file, path):
+        file.write(settings_text.encode())
         return library.Slam(vocabulary, path, library.Sensor.RGBD)
+
+
+@contextmanager
+def _memory_file() -> Iterator[tuple[IO[bytes], str]]:
+    """A file for ORB-SLAM3, and its path in this process. It has no name: nothing is left behind by a crash."""
+    with os.fdopen(os.memfd_create("slamgym"), "r+b", buffering=0) as file:
+        yield file, f"/proc/self/fd/{file.fileno()}"
 
 
 class _OwnOutput:

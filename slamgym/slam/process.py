@@ -4,9 +4,12 @@ import os
 import socket
 import subprocess
 import sys
+import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
+from pickle import UnpicklingError
 from typing import IO, Any
 
 from slamgym.slam.worker import Reply
@@ -35,6 +38,7 @@ class WorkerProcess:
         with theirs:
             self._connection: Connection[Any, Any] = Connection(ours.detach())
             self._process = _spawner().submit(_spawn, theirs.fileno(), memory_fd, log).result()
+        self._asked = 0
 
     @property
     def pid(self) -> int:
@@ -42,18 +46,29 @@ class WorkerProcess:
 
     def send(self, request: str, *arguments: Any) -> None:
         """Raises ConnectionError when the worker is gone."""
-        self._connection.send((request, *arguments))
+        self._asked += 1
+        self._connection.send((self._asked, request, *arguments))
 
     def receive(self, timeout_s: float) -> Reply:
-        """Raises TimeoutError when there is no answer in time, EOFError or ConnectionError when the worker is gone."""
-        if not self._connection.poll(timeout_s):
-            raise TimeoutError(f"no answer within {timeout_s} s")
-        return self._connection.recv()  # type: ignore[no-any-return]
+        """The answer to the last request. Raises TimeoutError when there is none in time, ConnectionError when the worker
+        is gone.
+        """
+        deadline = time.monotonic() + timeout_s
+        while self._connection.poll(max(0.0, deadline - time.monotonic())):
+            try:
+                number, ok, value = self._connection.recv()
+            except (EOFError, OSError, UnpicklingError) as error:
+                raise ConnectionError("the worker is gone") from error
+            # Ctrl-C may have ended the wait for an earlier answer, which comes first now.
+            if number == self._asked:
+                return ok, value
+        raise TimeoutError(f"no answer within {timeout_s} s")
 
     def kill(self) -> None:
         """End the process at once and collect it. The worker keeps nothing that would need an orderly end."""
         self._process.kill()
-        self._process.wait(_KILL_WAIT_S)
+        with suppress(subprocess.TimeoutExpired):  # the kernel may take its time, the user should not wait for it
+            self._process.wait(_KILL_WAIT_S)
         self._connection.close()
 
 

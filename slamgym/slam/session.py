@@ -44,7 +44,7 @@ class SlamSession:
         backend: str,
         config: SlamConfig,
         sync: Sync = "lockstep",
-        timeout_s: float = 30.0,
+        timeout_s: float = 20.0,
         log_path: Path | None = None,
     ) -> None:
         check_config(backend, config)
@@ -90,8 +90,8 @@ class SlamSession:
         if self._ready or self.outcome:
             return
         self.start()
-        self._ready = True
         _, value = self._receive(START_FINISH_TIMEOUT_S)
+        self._ready = True
         if isinstance(value, SlamgymError):
             self.close()
             raise value
@@ -159,7 +159,7 @@ class SlamSession:
             reply = self._worker.receive(timeout_s)
         except TimeoutError:
             return self._lose("timeout")
-        except (EOFError, ConnectionError):
+        except ConnectionError:
             return self._lose("crashed")
         return reply if reply[0] else self._lose("crashed", reply[1])
 

@@ -1,7 +1,7 @@
 """The program that a SLAM runs in: `python -m slamgym.slam.worker SOCKET_FD MEMORY_FD PARENT_PID`.
 
-It answers requests on the socket with (True, value) or (False, what went wrong). Frames come through shared memory.
-What the SLAM prints goes to the file that the parent gave as standard output, never to the socket.
+It answers numbered requests on the socket: the number, and (True, value) or (False, what went wrong). Frames come
+through shared memory. What the SLAM prints goes to the file that the parent gave as standard output, never to the socket.
 """
 
 import ctypes
@@ -70,7 +70,8 @@ def _checked(kind: type[Answer], answer: Answer) -> Answer:
 def serve(connection: "Connection[Any, Any]", memory_fd: int) -> None:
     server = Server(memory_fd)
     while True:
-        connection.send(server.answer(*connection.recv()))
+        number, request, *arguments = connection.recv()
+        connection.send((number, *server.answer(request, *arguments)))
 
 
 def main() -> None:
