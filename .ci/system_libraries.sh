@@ -11,14 +11,19 @@ if ! command -v dpkg-query >/dev/null 2>&1; then
     exit 0
 fi
 
-"$python" -c 'import ensurepip' 2>/dev/null || packages="$packages python3-venv"
+version=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+"$python" -c 'import ensurepip' 2>/dev/null || packages="$packages python$version-venv"
 # pybullet has wheels for Python 3.11; for a later one pip compiles it.
-"$python" -c 'import sys; sys.exit(sys.version_info >= (3, 12))' || packages="$packages g++ python3-dev"
+if [ "$version" != 3.11 ]; then
+    command -v g++ >/dev/null || packages="$packages g++"
+    "$python" -c 'import os, sys, sysconfig; sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' ||
+        packages="$packages python$version-dev"
+fi
 
 missing=""
 for package in $packages; do
-    status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
-    [ "$status" = installed ] || missing="$missing $package"
+    # One line an architecture, where a machine has several.
+    dpkg-query -W -f '${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || missing="$missing $package"
 done
 [ -n "$missing" ] || exit 0
 

@@ -34,17 +34,15 @@ class Agent(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class PathFollower:
-    """Pure pursuit of `obs["waypoints"]`; it looks at nothing else and remembers nothing.
+    """Pure pursuit of `obs["waypoints"]`. Of `info` it only takes what its actions mean, `turning_radius_m`.
 
     R. C. Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm, 1992. It slows down before bends that are
-    tighter than 0.3 m and turns on the spot where the path leads back. turning_radius_m: the environment's speed
-    divided by its turn rate, metres.
+    tighter than 0.3 m and turns on the spot where the path leads back. It remembers nothing.
     """
 
     reset_options: ClassVar[Mapping[str, Any]] = {"tour": "one_way"}
-    turning_radius_m: float = 0.25
 
-    def act(self, obs: Mapping[str, Any], info: Mapping[str, Any]) -> Action:  # noqa: ARG002
+    def act(self, obs: Mapping[str, Any], info: Mapping[str, Any]) -> Action:
         waypoints = np.asarray(obs["waypoints"], dtype=np.float64)
         target = _target(waypoints)
         distance = float(np.hypot(*target))
@@ -54,7 +52,7 @@ class PathFollower:
         if abs(bearing) > TURN_ON_THE_SPOT_RAD:
             return np.array([0.0, np.sign(bearing)], dtype=np.float32)
         forward = _allowed_speed(waypoints)
-        turn = forward * 2 * np.sin(bearing) / distance * self.turning_radius_m
+        turn = forward * 2 * np.sin(bearing) / distance * info["turning_radius_m"]
         # Slower where the turn comes near its limit: turning faster takes time, and at speed the robot would overshoot.
         ease = max(1.0, abs(turn) / HARD_TURN) ** 2
         return np.array([forward / ease, turn / ease], dtype=np.float32)

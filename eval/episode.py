@@ -32,6 +32,7 @@ def summarize_slam(record: SlamRecord) -> Summary:
     - `maps`: maps that frames were tracked in as they were fed; `loops_closed`: loops seen to close.
     - `losses`: list of `LossEvent`s as mappings; `loss_count`.
     - `time_to_initialize_s`, `time_to_first_loss_s`: from the first fed frame.
+    - `lockstep_overruns`: frames for which lock-step gave up waiting; above 0 the result depends on the computer.
     """
     return {
         "status": status(record),
@@ -41,6 +42,7 @@ def summarize_slam(record: SlamRecord) -> Summary:
         "completion": completion(record),
         **_counts(record),
         **_losses(record),
+        "lockstep_overruns": record.lockstep_overruns,
     }
 
 

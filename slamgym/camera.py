@@ -27,6 +27,12 @@ class PinholeCamera:
     distortion: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
+        if not all(isinstance(v, int) for v in (self.width, self.height)):
+            raise ConfigError(f"camera: expected a size in whole pixels, got {self.width!r} x {self.height!r}")
+        if not all(isinstance(v, int | float) for v in (self.fx, self.fy, self.cx, self.cy)):
+            raise ConfigError(f"camera: expected numbers for fx, fy, cx and cy, got {self}")
+        if not isinstance(self.distortion, tuple):
+            raise ConfigError(f"camera: expected a tuple of numbers as distortion, got {self.distortion!r}")
         if self.width < 1 or self.height < 1:
             raise ConfigError(f"camera: expected a size of at least 1x1 pixels, got {self.width}x{self.height}")
         if not all(isfinite(v) and v > 0 for v in (self.fx, self.fy)):
@@ -69,4 +75,5 @@ def resolve_camera(camera: str | PinholeCamera | Mapping[str, Any]) -> PinholeCa
             raise ConfigError(unknown_word("camera key", str(key), names))
     if missing := sorted(names - {"distortion"} - set(camera)):
         raise ConfigError(f"camera: expected the keys {', '.join(sorted(names))}; missing: {', '.join(missing)}")
-    return PinholeCamera(**{**camera, "distortion": tuple(camera.get("distortion", ()))})
+    distortion = camera.get("distortion", ())
+    return PinholeCamera(**{**camera, "distortion": tuple(distortion) if isinstance(distortion, list) else distortion})

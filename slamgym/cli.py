@@ -4,7 +4,6 @@ import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, make_dataclass
 from pathlib import Path
-from types import NoneType
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 import gymnasium as gym
@@ -27,21 +26,22 @@ notes = Console(stderr=True)
 
 
 def _option(name: str, info: FieldInfo) -> tuple[str, Any, Any]:
-    """One option of the command line for one parameter; its value is checked by the parameters, not here.
+    """One option of the command line for one parameter, taken as text: the parameters check it, not the parser.
 
     So a bad value gets the same message from the command line as from Python.
     """
-    annotation, metavar, default = info.annotation, None, info.get_default(call_default_factory=True)
-    if get_origin(annotation) is Literal:
-        annotation, metavar = str, "|".join(get_args(annotation))
-    elif name == "camera":
-        annotation, default = str, "default"
+    default = info.get_default(call_default_factory=True)
+    choices = get_args(info.annotation) if get_origin(info.annotation) is Literal else ("VALUE",)
+    annotation: Any = str
+    shown: Any = str(default)
+    if name == "camera":
+        shown = "default"
     elif name == "slam_options":
-        annotation, metavar = dict[str, str], "NAME VALUE"
-    elif set(get_args(annotation)) == {bool, NoneType}:
-        metavar = "True|False"
-    help_and_name = tyro.conf.arg(help=info.description, metavar=metavar)
-    return name, Annotated[annotation, help_and_name], field(default_factory=lambda: default)
+        annotation, shown, choices = dict[str, str], default, ("NAME VALUE",)
+    elif default is None:
+        annotation, shown = str | None, None
+    help_text = tyro.conf.arg(help=info.description, metavar="|".join(choices))
+    return name, Annotated[annotation, help_text], field(default_factory=lambda: shown)
 
 
 def _option_group(params: type[Params]) -> Any:
@@ -62,8 +62,8 @@ class Run:
 
     out: Path
     """Run folder to make; it must not exist yet, or be empty."""
-    drive: tyro.conf.OmitArgPrefixes[DriveOptions]  # type: ignore[valid-type]
-    slam: tyro.conf.OmitArgPrefixes[SlamOptions]  # type: ignore[valid-type]
+    drive: tyro.conf.OmitArgPrefixes[DriveOptions]
+    slam: tyro.conf.OmitArgPrefixes[SlamOptions]
     seed: Annotated[int, tyro.conf.arg(help="picks the path; the scene picks the house")] = 0
     agent: Annotated[str, tyro.conf.arg(metavar="|".join(AGENTS), help="who drives")] = "follower"
     max_episode_steps: Annotated[int, tyro.conf.arg(help="frames after which the episode is cut off")] = 10_000
@@ -77,7 +77,7 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         run(tyro.extras.subcommand_cli_from_dict(COMMANDS, prog="slamgym", args=arguments))
     except SlamgymError as error:
-        notes.print(f"slamgym: {error}", style="red", markup=False, highlight=False, soft_wrap=True)
+        _say(notes, f"slamgym: {error}", style="red")
         sys.exit(EXIT_BAD_INPUT)
     except KeyboardInterrupt:
         sys.exit(EXIT_INTERRUPTED)
@@ -92,9 +92,9 @@ def run(options: Run) -> None:
             f"expected a seed of at least 0 and max_episode_steps of at least 1, got {options.seed} and "
             f"{options.max_episode_steps}"
         )
-    check_free(options.out)
     keywords: Mapping[str, Any] = {**vars(options.drive), **vars(options.slam)}
     env = gym.make("HomeRobotSLAM-v0", max_episode_steps=options.max_episode_steps, **keywords)
+    check_free(options.out)
     try:
         with _progress() as progress:
             task = progress.add_task("loading", total=None)
@@ -107,13 +107,18 @@ def run(options: Run) -> None:
                 ),
             )
     except EpisodeInterrupted as interrupted:
-        notes.print(f"interrupted; what was driven is in {write_run(interrupted.episode, options.out)}")
+        _say(notes, f"interrupted; what was driven is in {write_run(interrupted.episode, options.out)}")
         raise
     finally:
         env.close()
     folder = write_run(episode, options.out)
     Console().print(episode_table([episode]))
-    Console().print(f"run folder: {folder}", soft_wrap=True)
+    _say(Console(), f"run folder: {folder}")
+
+
+def _say(console: Console, text: str, style: str | None = None) -> None:
+    """Print as it is: a path may hold what would be markup."""
+    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
 
 
 def _progress() -> Progress:

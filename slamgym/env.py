@@ -28,6 +28,7 @@ Info = dict[str, Any]
 
 TOURS = ("one_way", "round_trip")
 BLUR_SAMPLES = 5
+END_REACHED_M = 0.05
 CLEARANCE_M = 0.05
 """Kept free around the robot when paths are planned."""
 
@@ -51,7 +52,9 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
     Observation: `rgb` uint8 (H, W, 3), `depth` float32 (H, W) in metres along the optical axis with 0 = no measurement,
     `waypoints` float32 (5, 2): the next points of the path, 0.2 m apart, in the robot's frame (x forward, y left).
     Info: `stamp_ns`, `T_world_cam` (4, 4), `robot` (x, y, yaw), `speed_mps`, `yaw_rate_radps`, `progress_m`,
-    `path_length_m`, `distance_m`, `collision`.
+    `path_length_m`, `distance_m`, `collision`, `turning_radius_m` (of full speed with full turn).
+
+    The drive ends within `END_REACHED_M` of the path's end.
 
     The reset seed picks the path only; `reset(options={"tour": "round_trip"})` plans one that returns to its start.
     Raises ConfigError for a bad parameter, SceneError and RenderError at the first reset.
@@ -89,9 +92,10 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
             self.grid, free, self.params.path_length_m, np.random.default_rng(path_seed), tour=tour
         )
         self._noise_rng = np.random.default_rng(noise_seed)
-        if self._renderer is None or self._robot is None:
-            self._renderer = Renderer(house, self.params.camera, self.params.lighting)
+        if self._robot is None:
             self._robot = DifferentialDrive(house)
+        if self._renderer is None:
+            self._renderer = Renderer(house, self.params.camera, self.params.lighting)
         x, y = self.path.xy[0]
         self._state = self._before = self._robot.reset(x, y, self.path.heading_at(0.0))
         self._step = 0
@@ -102,7 +106,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         return self._last, self._info()
 
     def step(self, action: NDArray[np.float32]) -> tuple[Observation, float, bool, bool, Info]:
-        if self._robot is None:
+        if self._robot is None or self._renderer is None:
             raise gym.error.ResetNeeded("call reset() before step()")
         forward, turn = _checked_action(action)
         self._before = self._state
@@ -113,12 +117,14 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         self._distance += float(np.hypot(self._state.x - self._before.x, self._state.y - self._before.y))
         progress_before = self._progress
         self._progress = self.path.project(np.array([self._state.x, self._state.y]), progress_before)
-        terminated = self._progress >= self.path.length_m - 0.05
+        terminated = self._progress >= self.path.length_m - END_REACHED_M
         self._last = self._observe()
         return self._last, self._progress - progress_before, terminated, False, self._info()
 
     def render(self) -> NDArray[np.uint8] | None:
         """The colour image of the last observation, uint8 (H, W, 3), when `render_mode` is "rgb_array"."""
+        if self._renderer is None:
+            raise gym.error.ResetNeeded("call reset() before render()")
         return self._last["rgb"].copy() if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
@@ -183,6 +189,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
             "path_length_m": self.path.length_m,
             "distance_m": self._distance,
             "collision": state.collided,
+            "turning_radius_m": self.params.speed / self.params.top_turn_rate,
         }
 
 

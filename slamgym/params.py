@@ -47,7 +47,7 @@ class DriveParams(Params):
     turn_rate: float | None = Field(
         None, gt=0, le=50, description=f"top turn rate, rad/s; None: speed / {RADIUS_OF_TURN} m"
     )
-    fps: float = Field(30.0, gt=0, le=1000, description="frames a simulated second; one step is one frame")
+    fps: float = Field(30.0, ge=1, le=1000, description="frames a simulated second; one step is one frame")
     path_length_m: float = Field(10.0, ge=0.5, le=10_000, description="length of the planned path, m")
     camera: PinholeCamera = Field(CAMERAS["default"], description="a preset's name, or a PinholeCamera")
     camera_height: float = Field(0.83, ge=0.1, le=2.0, description="height of the camera above the floor, m")
@@ -59,7 +59,10 @@ class DriveParams(Params):
     @field_validator("camera", mode="before")
     @classmethod
     def _resolve_camera(cls, camera: Any) -> PinholeCamera:
-        return resolve_camera(camera)
+        resolved = resolve_camera(camera)
+        if resolved.distortion:
+            raise ConfigError(f"camera: expected one without distortion to render, got {resolved.distortion}")
+        return resolved
 
     @property
     def top_turn_rate(self) -> float:
@@ -77,7 +80,7 @@ class SlamParams(Params):
     stride: int = Field(0, ge=0, description="frames left out between two that the SLAM sees")
     loop_closure: bool | None = Field(None, description="loop closing on or off; None: the backend's default")
     slam_options: dict[str, Any] = Field(default_factory=dict, description="options of the backend")
-    slam_timeout_s: float = Field(20.0, gt=0, le=3600, description="longest time that the SLAM may take, s")
+    slam_timeout_s: float = Field(20.0, gt=0, le=3600, description="longest time that the SLAM may take for a frame, s")
     reward: Literal["progress", "tracking"] = Field(
         "progress", description="metres of progress, or that minus 1 for each fed frame that is not tracked"
     )

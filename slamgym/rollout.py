@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.metadata import version
 from typing import Any, NamedTuple
 
 import gymnasium as gym
@@ -10,8 +11,11 @@ from numpy.typing import NDArray
 
 from slamgym.agents import Agent
 from slamgym.env import HomeRobotEnv, Observation
+from slamgym.interrupt import deferred_interrupt
 from slamgym.scenes.occupancy import OccupancyGrid
 from slamgym.types import BoolArray, FloatArray, IntArray, SlamRecord, Summary
+
+RobotEnv = gym.Env[Observation, NDArray[np.float32]]
 
 
 class Step(NamedTuple):
@@ -30,8 +34,9 @@ class Step(NamedTuple):
 class Episode:
     """One drive and, with a SLAM in the loop, what became of it.
 
-    config: all parameters with their values. steps: N + 1 for N calls of `env.step`. path_xy: planned path (P, 2).
-    slam: None without a SLAM. summary: the content of `episode.json`. interrupted: ended by Ctrl-C, not by the drive.
+    config: all parameters with their values, and the versions that the results depend on. steps: N + 1 for N calls of
+    `env.step`. path_xy: planned path (P, 2). slam: None without a SLAM. summary: the content of `episode.json`, in it
+    `end`: "path_driven", "truncated" (at `max_episode_steps`), "slam_gone", or "interrupted" (Ctrl-C).
     """
 
     config: dict[str, Any]
@@ -42,7 +47,6 @@ class Episode:
     slam: SlamRecord | None
     slam_log: str
     summary: Summary
-    interrupted: bool = False
 
     @property
     def stamps_ns(self) -> IntArray:
@@ -66,7 +70,7 @@ class EpisodeInterrupted(KeyboardInterrupt):
 
 
 def run_episode(
-    env: gym.Env[Observation, NDArray[np.float32]],
+    env: RobotEnv,
     agent: Agent,
     seed: int,
     on_step: Callable[[float, float], None] | None = None,
@@ -78,20 +82,30 @@ def run_episode(
     """
     obs, info = env.reset(seed=seed, options=getattr(agent, "reset_options", None))
     steps = [_step_of(info, 0.0)]
-    done = interrupted = False
-    try:
-        while not done:
-            obs, reward, terminated, truncated, info = env.step(agent.act(obs, info))
-            done = terminated or truncated
-            steps.append(_step_of(info, float(reward)))
-            if on_step is not None:
-                on_step(info["progress_m"], info["path_length_m"])
-    except KeyboardInterrupt:
-        interrupted = True
-    episode = _episode(env, seed, tuple(steps), interrupted)
-    if interrupted:
+    end = ""
+    with deferred_interrupt() as interrupted:
+        try:
+            while not end:
+                obs, reward, terminated, truncated, info = env.step(agent.act(obs, info))
+                steps.append(_step_of(info, float(reward)))
+                end = _end(info, terminated, truncated, interrupted())
+                if on_step is not None:
+                    on_step(info["progress_m"], info["path_length_m"])
+        except KeyboardInterrupt:  # a second Ctrl-C, or one that the agent raised
+            end = "interrupted"
+        episode = _episode(env, agent, seed, tuple(steps), end)
+    if end == "interrupted":
         raise EpisodeInterrupted(episode)
     return episode
+
+
+def _end(info: dict[str, Any], terminated: bool, truncated: bool, interrupted: bool) -> str:
+    """What ended the drive with this step: "" when it goes on."""
+    if terminated:
+        return "slam_gone" if info.get("slam", {}).get("event") in ("crashed", "timeout") else "path_driven"
+    if truncated:
+        return "truncated"
+    return "interrupted" if interrupted else ""
 
 
 def _step_of(info: dict[str, Any], reward: float) -> Step:
@@ -106,19 +120,14 @@ def _step_of(info: dict[str, Any], reward: float) -> Step:
     )
 
 
-def _episode(
-    env: gym.Env[Observation, NDArray[np.float32]], seed: int, steps: tuple[Step, ...], interrupted: bool
-) -> Episode:
+def _episode(env: RobotEnv, agent: Agent, seed: int, steps: tuple[Step, ...], end: str) -> Episode:
     robot = env.unwrapped
     assert isinstance(robot, HomeRobotEnv)
     with_slam = env.has_wrapper_attr("slam_record")
+    # Results first: they end the SLAM, and its log is whole then.
     summary = env.get_wrapper_attr("conclude")() if with_slam else robot.summarize_drive()
-    limit = env.spec.max_episode_steps if env.spec is not None else None
-    config = {"env_id": env.spec.id if env.spec is not None else None, **robot.params.model_dump()}
-    if with_slam:
-        config |= env.get_wrapper_attr("slam_params").model_dump()
     return Episode(
-        config={**config, "seed": seed, "max_episode_steps": limit},
+        config=_config(env, robot, agent, seed),
         seed=seed,
         steps=steps,
         path_xy=robot.path.xy,
@@ -127,12 +136,30 @@ def _episode(
         slam_log=env.get_wrapper_attr("slam_log")() if with_slam else "",
         summary={
             "seed": seed,
+            "end": end,
             **summary,
             "progress_m": steps[-1].progress_m,
             "path_length_m": robot.path.length_m,
             "collision_steps": sum(step.collision for step in steps),
             "return": sum(step.reward for step in steps),
-            "interrupted": interrupted,
         },
-        interrupted=interrupted,
     )
+
+
+def _config(env: RobotEnv, robot: HomeRobotEnv, agent: Agent, seed: int) -> dict[str, Any]:
+    """Keywords of `gym.make` at the top level, so that the drive can be repeated; all else below `run`."""
+    slam = env.get_wrapper_attr("slam_config")() if env.has_wrapper_attr("slam_config") else {}
+    versions = {"slamgym": version("slamgym"), **slam.pop("slam_versions", {})}
+    return {
+        "run": {
+            "env_id": env.spec.id if env.spec is not None else None,
+            "seed": seed,
+            "agent": f"{type(agent).__module__}:{type(agent).__qualname__}",
+            "reset_options": dict(getattr(agent, "reset_options", {})),
+            "versions": versions,
+        },
+        "max_episode_steps": env.spec.max_episode_steps if env.spec is not None else None,
+        "render_mode": robot.render_mode,
+        **robot.params.model_dump(),
+        **slam,
+    }

@@ -10,8 +10,9 @@ slam.log         what the SLAM printed, the last MiB of it
 """
 
 import json
-import shutil
+import os
 import tempfile
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -23,48 +24,56 @@ from slamgym.errors import OutputError
 from slamgym.eval.plots import plot_map
 from slamgym.eval.robustness import estimate_by_frame, evaluated_map
 from slamgym.eval.trajectory import Trajectory, write_tum
+from slamgym.interrupt import deferred_interrupt
 from slamgym.rollout import Episode
 from slamgym.types import SlamRecord, TrackingState
 
-INTERRUPTED_SUFFIX = ".interrupted"
-
 
 def check_free(folder: Path) -> None:
-    """Raise OutputError unless a run folder can be made at `folder`; to be called before hours of work."""
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+    """Raise OutputError unless a run folder can be made at `folder`; to be asked before hours of work."""
+    folder = folder.resolve()
+    taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
+    if taken or folder.is_mount() or Path.cwd().is_relative_to(folder):
         raise OutputError(f"output folder: expected a new or empty folder, got {folder}; remove it or name another")
-    try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=f".{folder.name}-", dir=folder.parent):
-            pass
-    except OSError as error:
-        raise OutputError(
-            f"output folder: cannot write in {folder.parent} ({error.strerror}); name another folder"
-        ) from None
+    above = next(parent for parent in folder.parents if parent.exists())
+    if not above.is_dir() or not os.access(above, os.W_OK | os.X_OK):
+        raise OutputError(f"output folder: cannot write in {above}; name another folder, or change its permissions")
 
 
 def write_run(episode: Episode, folder: Path) -> Path:
     """Write the run folder in one piece and return it; an interrupted episode's gets the suffix ".interrupted".
 
-    Raises OutputError when the folder exists and is not empty or cannot be written.
+    Raises OutputError when the folder exists and is not empty or cannot be written. Ctrl-C waits until it is written.
     """
-    if episode.interrupted:
-        folder = folder.with_name(folder.name + INTERRUPTED_SUFFIX)
+    folder = folder.resolve()
+    if episode.summary["end"] == "interrupted":
+        folder = _interrupted_folder(folder)
     check_free(folder)
-    try:
-        draft = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+    with deferred_interrupt() as interrupted:
         try:
-            _write_files(episode, draft)
-            draft.chmod(0o755)  # mkdtemp's folders are private
-            draft.rename(folder)
-        except BaseException:
-            shutil.rmtree(draft, ignore_errors=True)
-            raise
-    except OSError as error:
-        raise OutputError(
-            f"output folder: writing {folder} failed ({error.strerror}); free space or name another"
-        ) from None
+            _write_at_once(episode, folder)
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise OutputError(f"output folder: writing {folder} failed ({reason}); make room or name another") from None
+    if interrupted():
+        raise KeyboardInterrupt
     return folder
+
+
+def _interrupted_folder(folder: Path) -> Path:
+    """The first free name: what an earlier interrupted run left is kept."""
+    suffixes = (".interrupted" if k == 1 else f".interrupted-{k}" for k in count(1))
+    candidates = (folder.with_name(folder.name + suffix) for suffix in suffixes)
+    return next(candidate for candidate in candidates if not candidate.exists())
+
+
+def _write_at_once(episode: Episode, folder: Path) -> None:
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}-", dir=folder.parent) as draft_folder:
+        draft = Path(draft_folder) / folder.name
+        draft.mkdir()
+        _write_files(episode, draft)
+        draft.replace(folder)
 
 
 def frames_table(episode: Episode) -> pd.DataFrame:
@@ -118,7 +127,9 @@ def _without_nan(value: Any) -> Any:
 
 
 def _write_files(episode: Episode, folder: Path) -> None:
-    (folder / "config.yaml").write_text(yaml.safe_dump(episode.config, sort_keys=False))
+    # Through JSON: a user may have given paths or NumPy's numbers, which YAML cannot write.
+    config = json.loads(json.dumps(episode.config, default=str))
+    (folder / "config.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
     (folder / "episode.json").write_text(json.dumps(_without_nan(episode.summary), indent=2, allow_nan=False) + "\n")
     write_tum(folder / "groundtruth.txt", Trajectory(episode.stamps_ns, episode.T_world_cam))
     frames_table(episode).to_csv(folder / "frames.csv", index=False, float_format="%.9g")

@@ -88,7 +88,8 @@ class SlamRecord:
     stamps_ns: int64 (N,). T_world_cam: true poses (N, 4, 4). states: TrackingState codes, int64 (N,).
     T_map_cam: poses as they were emitted (N, 4, 4), NaN where the state is not OK. map_id: int64 (N,), -1 where the
     state is not OK. tracked_points: int64 (N,). events: N SlamEvents. final: see `SlamTrajectory`.
-    outcome: "" when the SLAM ran to its end, else "crashed" or "timeout".
+    outcome: "" when the SLAM ran to its end, else "crashed" or "timeout". lockstep_overruns: fed frames after which the
+    SLAM's threads still worked when the longest wait of lock-step was over.
     """
 
     stamps_ns: IntArray
@@ -100,6 +101,7 @@ class SlamRecord:
     events: tuple[SlamEvent, ...]
     final: SlamTrajectory
     outcome: str = ""
+    lockstep_overruns: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,5 @@
 """`SlamWrapper` feeds an environment's frames to a SLAM, step by step, and reports what became of it."""
 
-import tempfile
-from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -14,7 +12,7 @@ from slamgym.env import HomeRobotEnv, Info, Observation
 from slamgym.errors import ConfigError
 from slamgym.eval.episode import summarize_slam
 from slamgym.params import SlamParams
-from slamgym.slam.backend import SlamConfig, check_config
+from slamgym.slam.backend import SlamConfig, check_config, load_backend, parse_options
 from slamgym.slam.record import Fed, feed, finish
 from slamgym.slam.session import SlamSession
 from slamgym.types import Frame, SlamEvent, SlamRecord, Summary, TrackingState
@@ -42,8 +40,8 @@ class SlamWrapper(
         RecordConstructorArgs.__init__(self, **slam_params)
         gym.Wrapper.__init__(self, env)
         robot = env.unwrapped
-        if not isinstance(robot, HomeRobotEnv):
-            raise ConfigError(f"SlamWrapper: expected a HomeRobot environment, got {robot!r}")
+        if not isinstance(robot, HomeRobotEnv) or env.has_wrapper_attr("slam_record"):
+            raise ConfigError(f"SlamWrapper: expected a HomeRobot environment without a SLAM, got {env}")
         self._robot = robot
         given = None if slam_params else robot.slam_params
         self.slam_params = given or SlamParams.checked(slam_params)
@@ -56,32 +54,37 @@ class SlamWrapper(
         check_config(self.slam_params.slam, self._config)
         assert isinstance(env.observation_space, spaces.Dict)
         self.observation_space = spaces.Dict({**env.observation_space.spaces, "slam_state": spaces.Discrete(3)})
-        self._logs: tempfile.TemporaryDirectory[str] | None = None
         self._session: SlamSession | None = None
         self._next_session: SlamSession | None = None
-        self._sessions_made: int = 0
+        self._record: SlamRecord | None = None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, Info]:
         if self._session is not None:
             self._session.close()
-        self._session = self._next_session or self._new_session()
-        self._next_session = None
-        obs, info = self.env.reset(seed=seed, options=options)
-        self._session.wait_ready()
+            self._session = None
+        # The SLAM loads while the house is loaded and the path planned.
+        session, self._next_session = self._next_session or self._new_session(), None
+        try:
+            obs, info = self.env.reset(seed=seed, options=options)
+            session.wait_ready()
+        except BaseException:
+            session.close()
+            raise
+        self._session = session
         self._fed: list[Fed] = []
         self._steps = 0
-        self._record: SlamRecord | None = None
+        self._record = None
         self._feed(obs, info)
         return self._with_slam(obs, info, fresh=True)
 
     def step(self, action: NDArray[np.float32]) -> tuple[Observation, float, bool, bool, Info]:
-        if self._session is None:
-            raise gym.error.ResetNeeded("call reset() before step()")
+        if self._session is None or self._record is not None:
+            raise gym.error.ResetNeeded("the episode has not begun or has ended: call reset() before step()")
         obs, progress, terminated, truncated, info = self.env.step(action)
         self._steps += 1
-        fresh = self._steps % (self.slam_params.stride + 1) == 0
+        fresh = self._steps % (self.slam_params.stride + 1) == 0 and not self._session.outcome
         reward = float(progress)
-        if fresh and not self._session.outcome:
+        if fresh:
             self._feed(obs, info)
             if self.slam_params.reward == "tracking" and self._fed[-1].result.state is not TrackingState.OK:
                 reward -= 1.0
@@ -99,10 +102,20 @@ class SlamWrapper(
         """All that the evaluation needs of the episode's SLAM run; ends the run."""
         if self._record is None:
             assert self._session is not None
-            # The next episode's SLAM loads its libraries while this one shuts down.
-            self._next_session = self._new_session()
             self._record = finish(self._session, self._fed)
+            # The next episode's SLAM loads while this one is evaluated.
+            self._next_session = self._new_session()
         return self._record
+
+    def slam_config(self) -> dict[str, Any]:
+        """All parameters of the SLAM, its options resolved, and the versions that the results depend on."""
+        backend = load_backend(self.slam_params.slam)
+        options = parse_options(backend.Options, self._config.options).model_dump()
+        return {
+            **self.slam_params.model_dump(),
+            "slam_options": options,
+            "slam_versions": backend.versions(self._config),
+        }
 
     @property
     def slam_pid(self) -> int | None:
@@ -118,19 +131,11 @@ class SlamWrapper(
             if session is not None:
                 session.close()
         self._session = self._next_session = None
-        if self._logs is not None:
-            self._logs.cleanup()
-            self._logs = None
         super().close()
 
     def _new_session(self) -> SlamSession:
-        if self._logs is None:
-            self._logs = tempfile.TemporaryDirectory(prefix="slamgym-")
-        log = Path(self._logs.name) / f"slam-{self._sessions_made}.log"
-        self._sessions_made += 1
-        session = SlamSession(
-            self.slam_params.slam, self._config, self.slam_params.slam_sync, self.slam_params.slam_timeout_s, log
-        )
+        params = self.slam_params
+        session = SlamSession(params.slam, self._config, params.slam_sync, params.slam_timeout_s)
         session.start()
         return session
 

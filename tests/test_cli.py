@@ -1,6 +1,7 @@
 import json
 import os
 import pty
+import select
 import signal
 import subprocess
 import sys
@@ -46,6 +47,8 @@ def test_run_writes_a_complete_folder(tmp_path, capsys):
         (["--agent", "patroll"], "did you mean 'patrol'"),
         (["--speed", "-1"], "speed: the value should be greater than 0, got -1"),
         (["--speed", "nan"], "finite"),
+        (["--speed", "fast"], "speed: the value should be a valid number"),
+        (["--loop-closure", "maybe"], "loop_closure"),
         (["--stride", "-1"], "got -1"),
         (["--seed", "-1"], "seed of at least 0"),
         (["--slam-options", "vocabulary", "/nonexistent/voc.txt"], "/nonexistent/voc.txt"),
@@ -65,7 +68,11 @@ def test_bad_input_is_one_line_and_leaves_nothing(arguments, message, tmp_path, 
 
 def test_a_filled_or_unwritable_folder_is_refused_before_the_drive(tmp_path, capsys):
     (tmp_path / "kept.txt").write_text("mine")
-    for out, message in [(tmp_path, "new or empty"), (tmp_path / "kept.txt" / "run", "cannot write")]:
+    for out, message in [
+        (tmp_path, "new or empty"),
+        (".", "new or empty"),
+        (tmp_path / "kept.txt" / "run", "cannot write"),
+    ]:
         with pytest.raises(SystemExit) as stopped:
             main(["run", "--out", str(out), *FAST])
         assert stopped.value.code == 2
@@ -87,28 +94,40 @@ def test_missing_egl_is_one_line(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def wait_for(terminal, word, limit_s=120):
+    shown = ""
+    deadline = time.monotonic() + limit_s
+    while word not in shown and time.monotonic() < deadline:
+        if select.select([terminal], [], [], 1.0)[0]:
+            shown += os.read(terminal, 4096).decode(errors="ignore")
+    assert word in shown
+
+
 def test_interrupt_keeps_what_is_done_and_leaves_no_process(tmp_path, children):
     before = children()
     out = tmp_path / "run"
     terminal, stderr = pty.openpty()
     process = subprocess.Popen(
         [sys.executable, "-m", "slamgym.cli", "run", "--out", str(out), "--camera", "small", "--speed", "0.1"],
+        env={**os.environ, "TERM": "xterm"},
         stdout=subprocess.DEVNULL,
         stderr=stderr,
         start_new_session=True,
     )
     os.close(stderr)
-    shown = ""
-    deadline = time.monotonic() + 120
-    while "driving" not in shown and time.monotonic() < deadline:
-        shown += os.read(terminal, 4096).decode()
-    time.sleep(1.0)
-    os.killpg(process.pid, signal.SIGINT)
-    process.wait(timeout=60)
-    os.close(terminal)
+    try:
+        wait_for(terminal, "driving")
+        time.sleep(1.0)
+        os.killpg(process.pid, signal.SIGINT)
+        process.wait(timeout=60)
+    finally:
+        process.kill()
+        os.close(terminal)
     assert process.returncode == 130
     assert not out.exists()
     kept = tmp_path / "run.interrupted"
     assert {file.name for file in kept.iterdir()} == FILES
-    assert json.loads((kept / "episode.json").read_text())["interrupted"] is True
+    result = json.loads((kept / "episode.json").read_text())
+    assert (result["end"], result["status"], result["completion"]) == ("interrupted", "ok", 1.0)
+    assert result["frames_fed"] == len(pd.read_csv(kept / "estimate.txt", comment="#", header=None))
     assert children() == before

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -18,6 +19,10 @@ from slamgym.params import DriveParams, SlamParams, split_params
         ({"camera": {"widht": 3}}, "did you mean 'width'?"),
         ({"camera": {"width": 3}}, "missing: cx, cy, fx, fy, height"),
         ({"camera": 3}, "got 3"),
+        ({"camera": {**CAMERAS["small"].as_dict(), "width": "640"}}, "whole pixels"),
+        ({"camera": {**CAMERAS["small"].as_dict(), "distortion": 3}}, "tuple of numbers"),
+        ({"camera": replace(CAMERAS["small"], distortion=(0.1, 0.0, 0.0, 0.0))}, "without distortion"),
+        ({"fps": 1e-9}, "fps"),
         ({"speed": -0.2}, "speed: the value should be greater than 0, got -0.2"),
         ({"speed": math.nan}, "speed: the value should be a finite number, got nan"),
         ({"speed": "fast"}, "got 'fast'"),

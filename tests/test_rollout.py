@@ -1,4 +1,6 @@
 import json
+import os
+import signal
 
 import gymnasium as gym
 import numpy as np
@@ -48,9 +50,12 @@ def test_run_folder_says_the_same_as_the_episode(episode, tmp_path):
 
 def test_a_written_config_repeats_the_drive(episode, tmp_path):
     config = yaml.safe_load((write_run(episode, tmp_path / "run") / "config.yaml").read_text())
-    seed, env_id = config.pop("seed"), config.pop("env_id")
-    env = gym.make(env_id, **{**config, "slam": "groundtruth"})
-    again = run_episode(env, PathFollower(), seed)
+    run = config.pop("run")
+    assert run["agent"] == "slamgym.agents.follower:PathFollower"
+    assert set(run["versions"]) == {"slamgym", "pyorbslam3", "vocabulary_sha256"}
+    assert config["slam_options"]["features"] == 1000  # the default, written out
+    env = gym.make(run["env_id"], **{**config, "slam": "groundtruth", "slam_options": {}})
+    again = run_episode(env, PathFollower(), run["seed"])
     env.close()
     assert np.array_equal(again.T_world_cam, episode.T_world_cam)
 
@@ -74,7 +79,33 @@ def test_interrupt_hands_over_what_was_driven(tmp_path):
         run_episode(env, Impatient(), seed=1)
     env.close()
     episode = interrupted.value.episode
-    assert episode.interrupted
+    assert episode.summary["end"] == "interrupted"
     assert 0.3 < episode.summary["progress_m"] < 0.4
     assert episode.summary["frames_fed"] == len(episode.steps)
     assert write_run(episode, tmp_path / "run").name == "run.interrupted"
+    assert write_run(episode, tmp_path / "run").name == "run.interrupted-2"
+
+
+def test_ctrl_c_waits_for_the_step_to_end():
+    class Signalling(PathFollower):
+        def act(self, obs, info):
+            if info["progress_m"] > 0.1:
+                os.kill(os.getpid(), signal.SIGINT)
+            return super().act(obs, info)
+
+    env = gym.make("HomeRobotSLAM-v0", camera="small", slam="groundtruth")
+    with pytest.raises(EpisodeInterrupted) as interrupted:
+        run_episode(env, Signalling(), seed=1)
+    env.close()
+    episode = interrupted.value.episode
+    assert episode.summary["frames_fed"] == len(episode.steps)
+    assert episode.summary["completion"] == 1.0
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_parameters_of_any_type_are_written(tmp_path):
+    env = gym.make("HomeRobot-v0", camera="small", speed=np.float64(0.5), path_length_m=np.int64(1))
+    folder = write_run(run_episode(env, PathFollower(), seed=1), tmp_path / "run")
+    env.close()
+    assert yaml.safe_load((folder / "config.yaml").read_text())["speed"] == 0.5
+    assert not (folder / "estimate.txt").exists()

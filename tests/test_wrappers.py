@@ -161,8 +161,9 @@ def test_wraps_by_hand():
     env = SlamWrapper(gym.make("HomeRobot-v0", **SMALL), slam="groundtruth", stride=3)
     assert run_episode(env, PathFollower(), seed=1).summary["status"] == "ok"
     env.close()
-    with pytest.raises(ConfigError, match="HomeRobot"):
-        SlamWrapper(gym.make("CartPole-v1"))
+    for wrong in (gym.make("CartPole-v1"), make()):
+        with pytest.raises(ConfigError, match="expected a HomeRobot environment without a SLAM"):
+            SlamWrapper(wrong)
 
 
 @pytest.mark.parametrize(
@@ -172,6 +173,8 @@ def test_wraps_by_hand():
         ({"slam": "orbslam3", "slam_options": {"feature": 1}}, ConfigError, "did you mean 'features'"),
         ({"slam": "orbslam3", "slam_options": {"vocabulary": "/nonexistent/voc.txt"}}, SlamError, "/nonexistent"),
         ({"slam": "groundtruth", "loop_closure": True}, ConfigError, "loop_closure"),
+        ({"slam": "json:dumps"}, ConfigError, "without"),
+        ({"slam": ":"}, ConfigError, "module:class"),
         ({"slam_sync": "lock"}, ConfigError, "did you mean 'lockstep'"),
         ({"stride": -1}, ConfigError, "got -1"),
     ],
@@ -180,3 +183,17 @@ def test_bad_input_is_refused_when_it_is_made(params, error, message):
     with pytest.raises(error, match=message) as caught:
         make(**params)
     assert "\n" not in str(caught.value)
+
+
+def test_a_concluded_or_failed_episode_takes_no_more_steps():
+    env = make(max_episode_steps=3)
+    *_, (_, _, done, _) = steps_of(env)
+    assert done
+    with pytest.raises(gym.error.ResetNeeded):
+        env.step(np.zeros(2, np.float32))
+    with pytest.raises(ConfigError):
+        env.reset(options={"tour": "nowhere"})
+    with pytest.raises(gym.error.ResetNeeded):
+        env.step(np.zeros(2, np.float32))
+    assert run_episode(env, PathFollower(), seed=1).summary["end"] == "truncated"
+    env.close()

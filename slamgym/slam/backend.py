@@ -27,7 +27,7 @@ class Backend(Protocol):
     """One SLAM run over one sequence. It lives in a worker process, so it may crash, hang or print as it likes.
 
     A backend's module must import without its SLAM library: `Options`, `supports_loop_closure`,
-    `has_background_threads` and `check` are used in the user's process, `__init__` and the rest in the worker's.
+    `has_background_threads`, `check` and `versions` are used in the user's process, the rest in the worker's.
     """
 
     Options: ClassVar[type[BaseModel]]
@@ -39,6 +39,11 @@ class Backend(Protocol):
     @classmethod
     def check(cls, config: SlamConfig) -> None:
         """Raise SlamError, saying what to install, when something is missing that can be seen without starting."""
+        ...
+
+    @classmethod
+    def versions(cls, config: SlamConfig) -> dict[str, str]:
+        """What a result depends on besides the parameters, to be recorded: versions of libraries, hashes of files."""
         ...
 
     def __init__(self, config: SlamConfig) -> None: ...
@@ -57,15 +62,21 @@ BACKENDS: dict[str, str] = {
 """Name -> "module:class". A new backend is one file and one line here."""
 
 
+PARTS = ("Options", "supports_loop_closure", "has_background_threads", "check", "versions", "track", "finish")
+
+
 def load_backend(name: str) -> type[Backend]:
     """The class that a registered name, or a "module:class" of the user's own, stands for; raises ConfigError."""
     if name not in BACKENDS and ":" not in name:
         raise ConfigError(unknown_word("slam backend", name, BACKENDS))
     module, _, attribute = BACKENDS.get(name, name).partition(":")
     try:
-        return cast(type[Backend], getattr(import_module(module), attribute))
-    except (ImportError, AttributeError) as error:
+        backend = getattr(import_module(module), attribute)
+    except (ImportError, AttributeError, TypeError, ValueError) as error:
         raise ConfigError(f"slam backend {name!r}: expected an importable 'module:class'; {error}") from error
+    if missing := [part for part in PARTS if not hasattr(backend, part)]:
+        raise ConfigError(f"slam backend {name!r}: expected a class as slamgym.slam.backend.Backend, without {missing}")
+    return cast(type[Backend], backend)
 
 
 Options = TypeVar("Options", bound=BaseModel)

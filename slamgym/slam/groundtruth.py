@@ -25,6 +25,10 @@ class GroundTruth:
     def check(cls, config: SlamConfig) -> None:
         """It needs nothing."""
 
+    @classmethod
+    def versions(cls, config: SlamConfig) -> dict[str, str]:  # noqa: ARG003
+        return {}
+
     def __init__(self, config: SlamConfig) -> None:  # noqa: ARG002
         self._stamps_ns: list[int] = []
         self._poses: list[FloatArray] = []

@@ -5,6 +5,7 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
+from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, Any
@@ -16,7 +17,7 @@ from slamgym.errors import SlamError
 from slamgym.geometry import from_quaternion
 from slamgym.slam.backend import SlamConfig, parse_options, untracked
 from slamgym.slam.map_tracker import MapTracker, final_trajectory
-from slamgym.slam.vocabulary import vocabulary_path
+from slamgym.slam.vocabulary import vocabulary_hash, vocabulary_path
 from slamgym.types import FloatArray, Frame, IntArray, SlamTrajectory, TrackingState, TrackResult
 
 _INSTALL = "pip install pyorbslam3, and on Debian: apt install libgl1 libegl1 libopengl0 libglx0 libsm6 libice6"
@@ -56,6 +57,11 @@ class OrbSlam3:
         if find_spec("pyorbslam3") is None:
             raise SlamError(f"slam backend 'orbslam3': the module pyorbslam3 is missing; {_INSTALL}")
         vocabulary_path(parse_options(OrbSlam3Options, config.options).vocabulary)
+
+    @classmethod
+    def versions(cls, config: SlamConfig) -> dict[str, str]:
+        options = parse_options(OrbSlam3Options, config.options)
+        return {"pyorbslam3": version("pyorbslam3"), "vocabulary_sha256": vocabulary_hash(options.vocabulary)}
 
     def __init__(self, config: SlamConfig) -> None:
         options = parse_options(OrbSlam3Options, config.options)

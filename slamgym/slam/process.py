@@ -50,8 +50,9 @@ class WorkerProcess:
         self._connection.send((self._asked, request, *arguments))
 
     def receive(self, timeout_s: float) -> Reply:
-        """The answer to the last request. Raises TimeoutError when there is none in time, ConnectionError when the worker
-        is gone.
+        """The answer to the last request.
+
+        Raises TimeoutError when there is none in time, ConnectionError when the worker is gone.
         """
         deadline = time.monotonic() + timeout_s
         while self._connection.poll(max(0.0, deadline - time.monotonic())):

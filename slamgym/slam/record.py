@@ -36,6 +36,7 @@ def finish(session: SlamSession, fed: Sequence[Fed]) -> SlamRecord:
         events=tuple(result.event for result in results),
         final=final,
         outcome=session.outcome,
+        lockstep_overruns=session.lockstep_overruns,
     )
 
 

@@ -11,6 +11,7 @@ import os
 import re
 import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -182,8 +183,9 @@ def _unpacked(packed: Path) -> Path:
     raw = packed.read_bytes()
     name = f"vocabulary-{hashlib.sha256(raw).hexdigest()[:12]}.txt"
     for folder in _cache_folders():
-        if (folder / name).is_file():
-            return folder / name
+        with suppress(PermissionError):
+            if (folder / name).is_file():
+                return folder / name
     text = lzma.decompress(raw)
     for folder in _cache_folders():
         try:
@@ -201,7 +203,7 @@ def _cache_folders() -> list[Path]:
 def _write_atomically(path: Path, content: bytes) -> Path:
     """Other processes see the whole file or none."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-        file.write(content)
-    os.replace(file.name, path)  # noqa: PTH105
-    return path
+    with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+        draft = Path(folder) / path.name
+        draft.write_bytes(content)
+        return draft.replace(path)

@@ -1,7 +1,7 @@
 """The program that a SLAM runs in: `python -m slamgym.slam.worker SOCKET_FD MEMORY_FD PARENT_PID`.
 
 It answers numbered requests on the socket: the number, and (True, value) or (False, what went wrong). Frames come
-through shared memory. What the SLAM prints goes to the file that the parent gave as standard output, never to the socket.
+through shared memory. What the SLAM prints goes to the file that is its standard output, never to the socket.
 """
 
 import ctypes

@@ -10,6 +10,7 @@ from slamgym.agents.planner import plan_path
 
 FPS = 30
 SUBSTEP = 1 / 240
+INFO = {"turning_radius_m": 0.25}
 
 
 def approach(value, target, step):
@@ -22,7 +23,7 @@ def drive(path, agent, speed, turning_radius_m=0.25):
     v = w = s = 0.0
     frames = [(x, y, v, s)]
     for _ in range(int(3 * FPS * path.length_m / speed) + 10 * FPS):
-        forward, turn = agent.act({"waypoints": path.waypoints(s, x, y, yaw)}, {})
+        forward, turn = agent.act({"waypoints": path.waypoints(s, x, y, yaw)}, {"turning_radius_m": turning_radius_m})
         for _ in range(round(1 / FPS / SUBSTEP)):
             v = approach(v, forward * speed, 1.0 * SUBSTEP)
             w = approach(w, turn * speed / turning_radius_m, 6.0 * SUBSTEP)
@@ -85,17 +86,17 @@ def test_full_speed_on_straights_at_any_scale():
 
 def test_another_ratio_of_speed_and_turn_rate(flat):
     path = plan_path(*flat(1), 12.0, np.random.default_rng(3))
-    frames = drive(path, PathFollower(turning_radius_m=0.15), 0.4, turning_radius_m=0.15)
+    frames = drive(path, PathFollower(), 0.4, turning_radius_m=0.15)
     assert deviation(path, frames).max() < 0.10
 
 
 def test_a_robot_off_the_path_comes_back_to_it():
     straight = np.stack([0.2 * np.arange(1, 6), np.full(5, 0.3)], axis=1)
-    forward, turn = PathFollower().act({"waypoints": straight}, {})
+    forward, turn = PathFollower().act({"waypoints": straight}, INFO)
     assert turn > 0.5
     assert 0 < forward <= 1
-    assert PathFollower().act({"waypoints": straight * (1, -1)}, {})[1] == -turn
-    assert np.array_equal(PathFollower().act({"waypoints": straight * (-1, 1)}, {}), [0, 1])
+    assert PathFollower().act({"waypoints": straight * (1, -1)}, INFO)[1] == -turn
+    assert np.array_equal(PathFollower().act({"waypoints": straight * (-1, 1)}, INFO), [0, 1])
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -103,7 +104,7 @@ def test_any_waypoints_give_a_valid_action(seed):
     rng = np.random.default_rng(seed)
     waypoints = np.cumsum(rng.normal(0, 0.15, (5, 2)), axis=0).astype(np.float32) * (seed % 4)
     for agent in AGENTS.values():
-        action = agent().act({"waypoints": waypoints}, {})
+        action = agent().act({"waypoints": waypoints}, INFO)
         assert action.dtype == np.float32
         assert action.shape == (2,)
         assert (np.abs(action) <= 1).all()
@@ -111,4 +112,4 @@ def test_any_waypoints_give_a_valid_action(seed):
 
 
 def test_it_stops_at_the_end():
-    assert np.array_equal(PathFollower().act({"waypoints": np.full((5, 2), 0.01)}, {}), [0, 0])
+    assert np.array_equal(PathFollower().act({"waypoints": np.full((5, 2), 0.01)}, INFO), [0, 0])

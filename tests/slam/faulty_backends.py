@@ -1,4 +1,4 @@
-# ruff: noqa: ARG002
+# ruff: noqa: ARG002, ARG003
 """SLAMs that misbehave, for the harness to survive. They run in the worker process."""
 
 import ctypes
@@ -28,6 +28,10 @@ class Healthy:
     @classmethod
     def check(cls, config: SlamConfig) -> None:
         pass
+
+    @classmethod
+    def versions(cls, config: SlamConfig) -> dict[str, str]:
+        return {}
 
     def __init__(self, config: SlamConfig) -> None:
         self.stamps_ns: list[int] = []
