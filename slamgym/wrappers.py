@@ -62,7 +62,6 @@ class SlamWrapper(
         if self._session is not None:
             self._session.close()
             self._session = None
-        # The SLAM loads while the house is loaded and the path planned.
         session, self._next_session = self._next_session or self._new_session(), None
         try:
             obs, info = self.env.reset(seed=seed, options=options)
@@ -75,6 +74,8 @@ class SlamWrapper(
         self._steps = 0
         self._record = None
         self._feed(obs, info)
+        # A SLAM runs only once and takes half a second to load: the next episode's loads while this one goes on.
+        self._next_session = self._new_session()
         return self._with_slam(obs, info, fresh=True)
 
     def step(self, action: NDArray[np.float32]) -> tuple[Observation, float, bool, bool, Info]:
@@ -103,8 +104,6 @@ class SlamWrapper(
         if self._record is None:
             assert self._session is not None
             self._record = finish(self._session, self._fed)
-            # The next episode's SLAM loads while this one is evaluated.
-            self._next_session = self._new_session()
         return self._record
 
     def slam_config(self) -> dict[str, Any]:

@@ -34,8 +34,8 @@ def test_accelerates_within_its_limit(robot):
     gains = np.diff([0.0] + [state.speed for state in states]) * 30
     assert gains.max() == pytest.approx(MAX_ACCELERATION, rel=1e-3)
     assert states[-1].speed == pytest.approx(0.5)
-    # Ramp of 0.5 s to 0.5 m/s, then 0.5 s at full speed.
-    assert states[-1].y == pytest.approx(0.125 + 0.25, abs=2e-3)
+    ramp_s = 0.5 / MAX_ACCELERATION
+    assert states[-1].y == pytest.approx(0.5 * (1.0 - ramp_s / 2), abs=2e-3)
 
 
 def test_drives_a_circle_of_the_commanded_radius(robot):

@@ -4,6 +4,7 @@ import lzma
 from collections.abc import Iterator
 from pathlib import Path
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,7 +14,7 @@ from slamgym.render import Renderer
 from slamgym.scenes.light import bake_light
 from slamgym.scenes.occupancy import free_space, occupancy_grid
 from slamgym.scenes.registry import load_scene
-from slamgym.slam.vocabulary import PACKED, Vocabulary, image_descriptors, train
+from slamgym.slam.vocabulary import PACKED, Descriptors, Vocabulary, train
 
 TRAINING_SEEDS = range(1_000_000, 1_000_012)
 """Seeds from 1,000,000 on are for training; evaluations use smaller ones."""
@@ -33,6 +34,13 @@ def house_images(seed: int, count: int = IMAGES_PER_HOUSE) -> Iterator[NDArray[n
         for x, y in grid.centre_of(cells):
             pose = mast_camera_pose(x, y, rng.uniform(-np.pi, np.pi), rng.uniform(*CAMERA_HEIGHTS_M))
             yield renderer.render(pose)[0]
+
+
+def image_descriptors(rgb: NDArray[np.uint8], features: int = 1000) -> Descriptors:
+    """ORB descriptors (N, 32) of an image (H, W, 3), with N at most `features`."""
+    orb = cv2.ORB_create(nfeatures=features, fastThreshold=12)  # type: ignore[attr-defined]
+    descriptors = orb.detectAndCompute(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY), None)[1]
+    return np.empty((0, 32), np.uint8) if descriptors is None else descriptors
 
 
 def train_on_houses(seeds: range = TRAINING_SEEDS, images_per_house: int = IMAGES_PER_HOUSE) -> Vocabulary:

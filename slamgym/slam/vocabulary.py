@@ -15,7 +15,6 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -53,13 +52,6 @@ class Vocabulary:
         rows = zip(self.parent, self.is_leaf, self.descriptors, self.weight, strict=True)
         lines = [f"{p} {int(leaf)} {' '.join(map(str, d))} {w:.4g}" for p, leaf, d, w in rows]
         return "\n".join([f"{self.branching} {self.depth} 0 0", *lines])
-
-
-def image_descriptors(rgb: NDArray[np.uint8], features: int = 1000) -> Descriptors:
-    """ORB descriptors (N, 32) of an image (H, W, 3), with N at most `features`."""
-    orb = cv2.ORB_create(nfeatures=features, fastThreshold=12)  # type: ignore[attr-defined]
-    descriptors = orb.detectAndCompute(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY), None)[1]
-    return np.empty((0, 32), np.uint8) if descriptors is None else descriptors
 
 
 def train(images: Sequence[Descriptors], branching: int = 6, depth: int = 6, seed: int = 0) -> Vocabulary:

@@ -8,7 +8,8 @@ import pytest
 
 from slamgym.errors import SlamError
 from slamgym.slam import vocabulary
-from slamgym.slam.vocabulary import PACKED, hamming, image_descriptors, train, vocabulary_hash, vocabulary_path
+from slamgym.slam.train_vocabulary import image_descriptors
+from slamgym.slam.vocabulary import PACKED, hamming, train, vocabulary_hash, vocabulary_path
 
 
 @pytest.fixture(scope="module")
