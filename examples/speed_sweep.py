@@ -1,7 +1,9 @@
 """How fast may the robot drive? The same paths at several speeds, ORB-SLAM3 in the loop: one table, a folder a run."""
 
+import sys
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 import gymnasium as gym
 import tyro
@@ -9,9 +11,12 @@ from rich.console import Console
 
 import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
+from slamgym.errors import SlamgymError
 from slamgym.report_table import episode_table
-from slamgym.rollout import Episode, run_episode
+from slamgym.rollout import Episode, EpisodeInterrupted, run_episode
 from slamgym.run_folder import check_free, write_run
+
+console = Console()
 
 
 def main(
@@ -22,26 +27,36 @@ def main(
     out: Path | None = None,
 ) -> None:
     """Drive the path that each of `seeds` picks in `scene` at each of `speeds` (m/s). out: a new folder."""
-    console = Console()
     out = out or Path("out") / f"speed_sweep-{datetime.now():%Y%m%d-%H%M%S}"
     check_free(out)
     episodes: list[Episode] = []
     try:
         for speed in speeds:
-            env = gym.make("HomeRobotSLAM-v0", scene=scene, speed=speed, path_length_m=path_length_m)
-            try:
-                for seed in seeds:
-                    with console.status(f"path {seed}: driving {path_length_m:g} m at {speed:g} m/s"):
-                        episode = run_episode(env, PathFollower(), seed)
-                    folder = write_run(episode, out / f"path_{seed}" / f"speed_{speed:g}")
-                    console.print(f"{speed:g} m/s: {episode.summary['status']}, {folder / 'map.png'}", soft_wrap=True)
-                    episodes.append(episode)
-            finally:
-                env.close()
-    except KeyboardInterrupt:
-        console.print("interrupted; the finished drives are kept")
-    console.print(episode_table(episodes))
+            drive(episodes, seeds, speed, out, scene=scene, path_length_m=path_length_m)
+    except KeyboardInterrupt as interrupted:
+        if isinstance(interrupted, EpisodeInterrupted):
+            write_run(interrupted.episode, out / "last")
+        sys.exit("interrupted")
+    finally:
+        if episodes:
+            console.print(episode_table(episodes))
+
+
+def drive(episodes: list[Episode], seeds: tuple[int, ...], speed: float, out: Path, **params: Any) -> None:
+    """Add one episode for each path."""
+    env = gym.make("HomeRobotSLAM-v0", speed=speed, **params)
+    try:
+        for seed in seeds:
+            with console.status(f"path {seed} at {speed:g} m/s"):
+                episodes.append(run_episode(env, PathFollower(), seed))
+            folder = write_run(episodes[-1], out / f"path_{seed}" / f"speed_{speed:g}")
+            console.print(f"{speed:g} m/s: {episodes[-1].summary['status']}, {folder / 'map.png'}", soft_wrap=True)
+    finally:
+        env.close()
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    try:
+        tyro.cli(main)
+    except SlamgymError as error:
+        sys.exit(f"speed_sweep: {error}")
