@@ -26,7 +26,6 @@ from slamgym.types import FloatArray, Summary
 Observation = dict[str, Any]
 Info = dict[str, Any]
 
-TOURS = ("one_way", "round_trip")
 BLUR_SAMPLES = 5
 END_REACHED_M = 0.05
 CLEARANCE_M = 0.05
@@ -208,10 +207,7 @@ def _tour(options: dict[str, Any] | None) -> str:
     for key in options or {}:
         if key != "tour":
             raise ConfigError(unknown_word("reset option", str(key), ["tour"]))
-    tour = (options or {}).get("tour", "one_way")
-    if tour not in TOURS:
-        raise ConfigError(unknown_word("tour", str(tour), TOURS))
-    return str(tour)
+    return str((options or {}).get("tour", "one_way"))
 
 
 def _checked_action(action: NDArray[np.float32]) -> tuple[float, float]:

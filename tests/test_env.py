@@ -11,6 +11,8 @@ from slamgym.agents import PathFollower, Patrol
 from slamgym.env import HomeRobotEnv
 from slamgym.errors import ConfigError, SceneError
 from slamgym.rollout import run_episode
+from slamgym.scenes.house import House, Material, Part
+from slamgym.scenes.registry import SCENES
 
 SMALL = {"camera": "small", "path_length_m": 2.0, "speed": 0.5}
 
@@ -179,6 +181,20 @@ def test_bad_use_is_told_in_one_line(env):
     env.reset(seed=1)
     with pytest.raises(ConfigError, match="two finite numbers"):
         env.step(np.array([np.nan, 0.0], np.float32))
+
+
+def cupboard(seed: int) -> House:
+    """A floor of 0.6 x 0.6 m, in which no robot can turn round."""
+    corners = np.array([[0, 0, 0], [0.6, 0, 0], [0.6, 0.6, 0], [0, 0.6, 0]], np.float32)
+    return House("cupboard", (Part("floor", Material("wood"), corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)),))
+
+
+def test_a_house_without_room_is_refused_and_the_environment_can_be_closed(monkeypatch):
+    monkeypatch.setitem(SCENES, "cupboard", f"{__name__}:cupboard")
+    env = gym.make("HomeRobotSLAM-v0", scene="cupboard", slam="groundtruth")
+    with pytest.raises(SceneError, match="no room for the robot: expected at least"):
+        env.reset(seed=0)
+    env.close()
 
 
 def test_noise_and_blur_do_what_they_say():
