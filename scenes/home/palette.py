@@ -119,8 +119,10 @@ def make_palette(rng: np.random.Generator) -> Palette:
         rugs=tuple(_picture(f"rug {i}", pictures.rug(rng)) for i in range(2)),
         pictures=tuple(_picture(f"picture {i}", pictures.PICTURES[i % len(pictures.PICTURES)](rng)) for i in range(14)),
         views=tuple(_picture(f"view {i}", prints.outside(rng)) for i in range(2)),
-        plain_walls=tuple(
-            _textured(f"paint {i}", textures.plaster(rng, colour), 2.0) for i, colour in enumerate(walls[:3])
+        # The last is as smooth as walls get, and gives a camera next to nothing to hold on to.
+        plain_walls=(
+            *(_textured(f"woodchip {i}", textures.woodchip(rng, walls[i]), 1.6) for i in range(3)),
+            _textured("paint", textures.plaster(rng, walls[2]), 2.0),
         ),
         papered_walls=(
             _textured("flowered paper", textures.floral_wallpaper(rng, walls[3], cloth[1]), 1.7),

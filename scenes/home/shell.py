@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -88,10 +89,18 @@ def _gaps(length: float, taken: list[tuple[float, float]]) -> list[tuple[float, 
 def _pierced_face(length: float, height: float, openings: tuple[Opening, ...], around: float = 0.0) -> Mesh:
     """An upright face towards +y with rectangular holes; uv in metres, u to the right."""
     spans = [(o.centre - o.width / 2, o.centre + o.width / 2) for o in openings]
-    pieces = [(*gap, 0.0, height) for gap in _gaps(length, spans)]
-    for (left, right), opening in zip(spans, openings, strict=True):
-        pieces += [(left, right, 0.0, opening.bottom), (left, right, opening.top, height)]
-    corners = np.array([_facing(*piece) for piece in pieces if piece[3] > piece[2]])
+    columns = [(*gap, None) for gap in _gaps(length, spans)]
+    columns += [(*span, opening) for span, opening in zip(spans, openings, strict=True)]
+    # All columns are cut at the same heights: neighbours then share their vertices, and with them the light.
+    levels = sorted({0.0, height, *(o.bottom for o in openings), *(o.top for o in openings)})
+    corners = np.array(
+        [
+            _facing(left, right, low, high)
+            for left, right, opening in columns
+            for low, high in pairwise(levels)
+            if opening is None or high <= opening.bottom or low >= opening.top
+        ]
+    )
     return quads(corners, np.stack([-corners[..., 0] - around, corners[..., 2]], axis=-1))
 
 

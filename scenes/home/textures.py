@@ -41,6 +41,13 @@ def plaster(rng: np.random.Generator, colour: Colour, size: int = 512, contrast:
     return tinted(colour, contrast * noise(rng, size, 0.3) + 1.5 * contrast * noise(rng, size, 1.8))
 
 
+def woodchip(rng: np.random.Generator, colour: Colour, size: int = 512) -> Image:
+    """Painted ingrain wallpaper: chips of a few millimetres that stand out and throw a small shadow."""
+    chips = np.clip(noise(rng, size, 0.4) - 0.9, 0.0, 1.5)
+    relief = chips - np.roll(chips, (2, 1), axis=(0, 1))
+    return tinted(colour, 0.22 * relief + 0.015 * noise(rng, size, 0.5) + 0.018 * noise(rng, size, 1.8))
+
+
 def _grain(rng: np.random.Generator, size: int) -> FloatArray:
     fine = noise(rng, size, 0.9, stretch=18.0)
     wide = noise(rng, size, 1.6, stretch=9.0)
@@ -120,7 +127,7 @@ def marble(rng: np.random.Generator, colour: Colour, size: int = 256) -> Image:
 def fabric(rng: np.random.Generator, colour: Colour, size: int = 256) -> Image:
     """Woven cloth: threads of uneven tone, a little worn."""
     threads = rng.normal(0.0, 0.05, size)[:, None] + rng.normal(0.0, 0.05, size)[None, :]
-    return tinted(colour, threads + 0.04 * noise(rng, size, 0.4) + 0.06 * noise(rng, size, 1.5))
+    return tinted(colour, threads + 0.06 * noise(rng, size, 0.5) + 0.09 * noise(rng, size, 1.4))
 
 
 def carpet(rng: np.random.Generator, colour: Colour, size: int = 512) -> Image:
@@ -150,12 +157,12 @@ def striped_wallpaper(rng: np.random.Generator, colour: Colour, size: int = 512)
     tone = rng.normal(0.0, 0.035, len(edges) + 1)
     tone[-1] = tone[0]
     stripes = tone[np.searchsorted(edges, np.arange(size))][None, :]
-    return tinted(colour, stripes + 0.018 * noise(rng, size, 0.4) + 0.02 * noise(rng, size, 1.6))
+    return tinted(colour, stripes + 0.035 * noise(rng, size, 0.6) + 0.03 * noise(rng, size, 1.6))
 
 
 def floral_wallpaper(rng: np.random.Generator, colour: Colour, accent: Colour, size: int = 512) -> Image:
     """Flowers on stems, no two alike, scattered over pale paper."""
-    image = plaster(rng, colour, size, 0.015)
+    image = plaster(rng, colour, size, 0.03)
     cells = 6
     for row, column in np.ndindex(cells, cells):
         centre = (np.array([column + 0.5 * (row % 2), row]) + rng.uniform(0.2, 0.8, 2)) * size / cells

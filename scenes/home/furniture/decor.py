@@ -65,11 +65,9 @@ def curtain(palette: Palette, width: float, top: float, bottom: float) -> Piece:
 
 
 def radiator(palette: Palette, width: float) -> Piece:
-    """Fins between two pipes, hung under a window."""
-    count = int(width / 0.06)
-    xs = (np.arange(count) + 0.5) * width / count - width / 2
-    fins = [box((x - 0.018, x + 0.018), (0.04, 0.13), (0.14, 0.72)) for x in xs]
-    pipes = [box((-width / 2, width / 2), (0.07, 0.1), (z, z + 0.03)) for z in (0.17, 0.66)]
+    """A flat panel with a grille on top, hung under a window."""
+    x = (-width / 2, width / 2)
+    panel = [box(x, (0.04, 0.13), (0.14, 0.70)), box((x[0] + 0.02, x[1] - 0.02), (0.13, 0.134), (0.17, 0.67))]
     valve = [
         cylinder(0.02, (0.1, 0.17), (width / 2 - 0.02, 0.085)),
         cylinder(0.012, (0.0, 0.1), (width / 2 - 0.02, 0.085)),
@@ -77,8 +75,8 @@ def radiator(palette: Palette, width: float) -> Piece:
     return Piece(
         "radiator",
         (
-            Component("fins", palette.white, merge(fins)),
-            Component("pipes", palette.white, merge(pipes)),
+            Component("panel", palette.white, merge(panel)),
+            Component("grille", palette.metal, box(x, (0.045, 0.125), (0.70, 0.715))),
             Component("valve", palette.metal, merge(valve)),
             Component("hooks", palette.metal, merge(box((x, x + 0.02), (0.0, 0.05), (0.6, 0.63)) for x in (-0.2, 0.2))),
         ),
