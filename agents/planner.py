@@ -37,7 +37,8 @@ def plan_path(
     """A smooth path between random goals, with a point every 0.05 m, that depends on its arguments alone.
 
     free: where the robot's centre may be, from `free_space`; the path stays within half a cell of it.
-    tour: "one_way" is exactly `path_length_m` long; "round_trip" ends where it starts and is that long or little more.
+    tour: "one_way" is exactly `path_length_m` long; "round_trip" ends where it starts and is at least
+    that long, mostly a few percent more and at times up to twice that.
 
     Legs lead to goals at least 2.5 m away where the house has them, keep away from obstacles, and are joined by curves;
     where there is no room for a curve the path turns on the spot. Raises SceneError when no such path is found.

@@ -51,7 +51,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
     Observation: `rgb` uint8 (H, W, 3), `depth` float32 (H, W) in metres along the optical axis with 0 = no measurement,
     `waypoints` float32 (5, 2): the next points of the path, 0.2 m apart, in the robot's frame (x forward, y left).
     Info: `stamp_ns`, `T_world_cam` (4, 4), `robot` (x, y, yaw), `speed_mps`, `yaw_rate_radps`, `progress_m`,
-    `path_length_m`, `distance_m`, `collision`, `turning_radius_m` (of full speed with full turn).
+    `path_length_m`, `distance_m`, `collision`, `action_scale` (m/s and rad/s of an action of 1).
 
     The drive ends within `END_REACHED_M` of the path's end.
 
@@ -188,7 +188,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
             "path_length_m": self.path.length_m,
             "distance_m": self._distance,
             "collision": state.collided,
-            "turning_radius_m": self.params.speed / self.params.top_turn_rate,
+            "action_scale": np.array([self.params.speed, self.params.top_turn_rate]),
         }
 
 

@@ -103,6 +103,9 @@ class Canvas:
     def __init__(self, width: int, height: int) -> None:
         from OpenGL import GL
 
+        most = int(GL.glGetIntegerv(GL.GL_MAX_RENDERBUFFER_SIZE))
+        if max(width, height) > most:
+            raise RenderError(f"camera: expected an image of at most {most}x{most} pixels, got {width}x{height}")
         self.width, self.height = width, height
         self._framebuffer = GL.glGenFramebuffers(1)
         self._buffers = GL.glGenRenderbuffers(2)

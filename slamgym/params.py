@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, Literal, Self, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 from pydantic_core import ErrorDetails
 
 from slamgym.camera import CAMERAS, PinholeCamera, resolve_camera
@@ -12,6 +12,9 @@ from slamgym.slam.backend import load_backend
 
 RADIUS_OF_TURN = 0.25
 """metres; `turn_rate=None` turns at speed / RADIUS_OF_TURN, so that another speed retimes the same path."""
+
+LONGEST_STEP_M = 0.4
+"""More than that between two frames, and progress along a path that crosses itself cannot be told."""
 
 
 class Params(BaseModel):
@@ -63,6 +66,15 @@ class DriveParams(Params):
         if resolved.distortion:
             raise ConfigError(f"camera: expected one without distortion to render, got {resolved.distortion}")
         return resolved
+
+    @model_validator(mode="after")
+    def _short_steps(self) -> Self:
+        if self.speed / self.fps > LONGEST_STEP_M:
+            raise ConfigError(
+                f"speed, fps: expected at most {LONGEST_STEP_M} m between two frames, got {self.speed / self.fps:.2f} m; "
+                "drive slower or take more frames a second"
+            )
+        return self
 
     @property
     def top_turn_rate(self) -> float:

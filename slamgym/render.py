@@ -45,9 +45,13 @@ class Renderer:
         self._projection = projection_matrix(camera)
         self._corners = box_corners(batches)
         self._context: Context | None = Context()
-        with self._context.current():
-            self._canvas = Canvas(camera.width, camera.height)
-            self._drawing = Drawing(batches)
+        try:
+            with self._context.current():
+                self._canvas = Canvas(camera.width, camera.height)
+                self._drawing = Drawing(batches)
+        except BaseException:
+            self._context.destroy()
+            raise
 
     def render(self, T_world_cam: FloatArray) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """Colour (H, W, 3) and depth (H, W), metres along the optical axis, 0 where nothing is within 0.05 to 40 m.

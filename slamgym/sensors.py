@@ -35,7 +35,8 @@ def _shifted(
         cv2.remap(image, *where, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
         for image in (depth, (depth > 0.0).astype(np.float32))
     )
-    return np.where(weight > 0.0, total / np.maximum(weight, np.float32(1e-3)), np.float32(0.0))
+    least = np.float32(1e-3)
+    return np.where(weight > least, total / np.maximum(weight, least), np.float32(0.0))
 
 
 def rgb_noise(rgb: NDArray[np.uint8], sigma: float, rng: np.random.Generator) -> NDArray[np.uint8]:

@@ -23,6 +23,7 @@ from slamgym.params import DriveParams, SlamParams, split_params
         ({"camera": {**CAMERAS["small"].as_dict(), "distortion": 3}}, "tuple of numbers"),
         ({"camera": replace(CAMERAS["small"], distortion=(0.1, 0.0, 0.0, 0.0))}, "without distortion"),
         ({"fps": 1e-9}, "fps"),
+        ({"fps": 2, "speed": 1.0}, "at most 0.4 m between two frames, got 0.50 m"),
         ({"speed": -0.2}, "speed: the value should be greater than 0, got -0.2"),
         ({"speed": math.nan}, "speed: the value should be a finite number, got nan"),
         ({"speed": "fast"}, "got 'fast'"),

@@ -254,3 +254,8 @@ def test_importing_the_module_opens_no_graphics() -> None:
     environment = {key: value for key, value in os.environ.items() if key != "PYOPENGL_PLATFORM"}
     run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=60)
     assert run.stdout.split() == ["False", "False"], run.stderr
+
+
+def test_a_camera_larger_than_opengl_allows_is_refused() -> None:
+    with pytest.raises(RenderError, match=r"at most .* pixels, got 100000x10"):
+        Renderer(cluttered_room(), PinholeCamera(100_000, 10, 100.0, 100.0, 50.0, 5.0), "flat")

@@ -15,10 +15,11 @@ ROUTE_WIDTH = 0.9
 DOOR_ZONE = 0.9  # metres into the room that stay free behind a doorway
 _HEADROOM = 1.4  # height of the space in front of a piece
 _STANDS = 0.3  # what begins higher hangs, or stands on something else
-_ROBOT_HEIGHT = 1.3  # what hangs higher does not narrow a route
+_NARROWS_BELOW = 1.3  # what hangs higher does not narrow a route
 _CELL = 0.05
 _TRIES = 6
 _TOUCH = 1e-3  # overlaps up to 1 mm count as touching
+_CUT_OFF_M2 = 0.5  # clear floor that furniture may close off from the doors
 _OPEN_SHARE = 0.09  # of the room's area that must be 0.45 m away from everything and joined to the doors
 
 
@@ -174,7 +175,7 @@ class RoomLayout:
 
     def _passable(self, boxes: list[FloatArray]) -> bool:
         """Whether free space, half a route's width away from everything, joins all doors and is large enough."""
-        obstacles = [box for box in boxes if box[0, 2] < _ROBOT_HEIGHT]
+        obstacles = [box for box in boxes if box[0, 2] < _NARROWS_BELOW]
         clear = _clear_cells(self.planned, obstacles)
         labels, _ = ndimage.label(clear)
         room = self.planned.room
@@ -182,7 +183,9 @@ class RoomLayout:
         at_doors = {int(labels[cell]) for cell in cells}
         if len(at_doors) != 1 or 0 in at_doors:
             return False
-        return int((labels == at_doors.pop()).sum()) * _CELL**2 >= _OPEN_SHARE * self.area
+        joined = int((labels == at_doors.pop()).sum()) * _CELL**2
+        cut_off = int(clear.sum()) * _CELL**2 - joined
+        return joined >= _OPEN_SHARE * self.area and cut_off <= _CUT_OFF_M2
 
 
 def _clear_cells(planned: PlannedRoom, obstacles: list[FloatArray]) -> BoolArray:

@@ -89,7 +89,7 @@ def _gaps(length: float, taken: list[tuple[float, float]]) -> list[tuple[float, 
 def _pierced_face(length: float, height: float, openings: tuple[Opening, ...], around: float = 0.0) -> Mesh:
     """An upright face towards +y with rectangular holes; uv in metres, u to the right."""
     spans = [(o.centre - o.width / 2, o.centre + o.width / 2) for o in openings]
-    columns = [(*gap, None) for gap in _gaps(length, spans)]
+    columns: list[tuple[float, float, Opening | None]] = [(*gap, None) for gap in _gaps(length, spans)]
     columns += [(*span, opening) for span, opening in zip(spans, openings, strict=True)]
     # All columns are cut at the same heights: neighbours then share their vertices, and with them the light.
     levels = sorted({0.0, height, *(o.bottom for o in openings), *(o.top for o in openings)})

@@ -10,7 +10,7 @@ from slamgym.agents.planner import plan_path
 
 FPS = 30
 SUBSTEP = 1 / 240
-INFO = {"turning_radius_m": 0.25}
+INFO = {"action_scale": (0.2, 0.8)}
 
 
 def approach(value, target, step):
@@ -21,9 +21,10 @@ def drive(path, agent, speed, turning_radius_m=0.25):
     """x, y, speed and progress of each frame of a differential drive with 1 m/s^2 and 6 rad/s^2."""
     (x, y), yaw = path.xy[0], path.heading_at(0.0)
     v = w = s = 0.0
+    info = {"action_scale": (speed, speed / turning_radius_m)}
     frames = [(x, y, v, s)]
     for _ in range(int(3 * FPS * path.length_m / speed) + 10 * FPS):
-        forward, turn = agent.act({"waypoints": path.waypoints(s, x, y, yaw)}, {"turning_radius_m": turning_radius_m})
+        forward, turn = agent.act({"waypoints": path.waypoints(s, x, y, yaw)}, info)
         for _ in range(round(1 / FPS / SUBSTEP)):
             v = approach(v, forward * speed, 1.0 * SUBSTEP)
             w = approach(w, turn * speed / turning_radius_m, 6.0 * SUBSTEP)

@@ -11,6 +11,7 @@ KEYS = {
     "status", "success", "ate_rmse_m", "ate_online_rmse_m", "rpe_trans_rmse_m", "rpe_rot_mean_deg",
     "rpe_step_trans_rmse_m", "rpe_step_rot_mean_deg", "completion", "frames_fed", "frames_tracked", "maps",
     "loops_closed", "losses", "loss_count", "time_to_first_loss_s", "time_to_initialize_s", "tracked_points_median",
+    "lockstep_overruns",
 }  # fmt: skip
 ACCURACY = [key for key in sorted(KEYS) if key.startswith(("ate", "rpe"))]
 

@@ -11,7 +11,7 @@ from slamgym.scenes.home.solids import box, cushion, cylinder, lathe, merge, pla
 def toilet(palette: Palette, _: np.random.Generator) -> Piece:
     bowl = [(0.0, 0.0), (0.13, 0.0), (0.12, 0.18), (0.2, 0.38), (0.2, 0.4), (0.14, 0.4), (0.08, 0.22), (0.0, 0.2)]
     seat = [(0.13, 0.4), (0.205, 0.4), (0.205, 0.425), (0.13, 0.425), (0.13, 0.4)]
-    lid = tilted(placed(cushion((-0.19, 0.19), (0.0, 0.42), (-0.012, 0.012), 0.3), 0.0), 1.45, (0.0, 0.22, 0.43))
+    lid = tilted(cushion((-0.19, 0.19), (0.0, 0.42), (-0.012, 0.012), 0.3), 1.45, (0.0, 0.22, 0.43))
     return Piece(
         "toilet",
         (

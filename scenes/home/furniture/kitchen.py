@@ -46,7 +46,7 @@ def sink(palette: Palette, rng: np.random.Generator) -> Piece:
     rim = [
         box((-_HALF, -0.23), (0.0, 0.62), top),
         box((0.23, _HALF), (0.0, 0.62), top),
-        box((-0.23, 0.23), (0.0, 0.12), top),
+        box((-0.23, 0.23), (0.0, 0.118), top),
         box((-0.23, 0.23), (0.5, 0.62), top),
     ]
     basin = [

@@ -48,10 +48,6 @@ class Piece:
         vertices = np.concatenate([c.mesh.vertices for c in self.components])
         return np.stack([vertices.min(axis=0), vertices.max(axis=0)])
 
-    @property
-    def solid(self) -> bool:
-        return any(c.solid for c in self.components)
-
     def placed(self, yaw: float, at: ArrayLike) -> "Piece":
         """The piece turned by `yaw` and moved; its tops stay in the old frame and are dropped."""
         components = tuple(

@@ -67,7 +67,7 @@ def _seat(kind: str, width: float, seats: int, palette: Palette, rng: np.random.
     return Piece(
         kind,
         (
-            Component("feet", palette.walnut, placed(legs(width - 0.1, (0.05, depth - 0.05), 0.08), 0.0)),
+            Component("feet", palette.walnut, legs(width - 0.1, (0.05, depth - 0.05), 0.08)),
             Component("base", palette.sofa, box((-half + 0.04, half - 0.04), (0.02, depth - 0.03), (0.07, 0.3))),
             Component("back", palette.sofa, cushion((-half + 0.03, half - 0.03), (0.0, 0.22), (0.1, 0.84), 0.25)),
             Component("arms", palette.sofa, merge(arms)),
@@ -126,7 +126,7 @@ def ottoman(palette: Palette, _: np.random.Generator) -> Piece:
     return Piece(
         "ottoman",
         (
-            Component("feet", palette.oak, placed(legs(0.3, (0.1, 0.4), 0.08), 0.0)),
+            Component("feet", palette.oak, legs(0.3, (0.1, 0.4), 0.08)),
             Component("body", palette.cushions[1], body),
             Component("cover", palette.cushions[0], cushion((-0.2, 0.2), (0.05, 0.45), (0.4, 0.47), 0.6)),
         ),
