@@ -69,9 +69,10 @@ class DriveParams(Params):
 
     @model_validator(mode="after")
     def _short_steps(self) -> Self:
-        if self.speed / self.fps > LONGEST_STEP_M:
+        step_m = self.speed / self.fps
+        if step_m > LONGEST_STEP_M:
             raise ConfigError(
-                f"speed, fps: expected at most {LONGEST_STEP_M} m between two frames, got {self.speed / self.fps:.2f} m; "
+                f"speed, fps: expected at most {LONGEST_STEP_M} m between two frames, got {step_m:.2f} m; "
                 "drive slower or take more frames a second"
             )
         return self
