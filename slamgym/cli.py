@@ -12,6 +12,7 @@ from pydantic.fields import FieldInfo
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from slamgym import MAX_EPISODE_STEPS
 from slamgym.agents import AGENTS
 from slamgym.errors import ConfigError, SlamgymError, unknown_word
 from slamgym.params import DriveParams, Params, SlamParams
@@ -66,7 +67,9 @@ class Run:
     slam: tyro.conf.OmitArgPrefixes[SlamOptions]
     seed: Annotated[int, tyro.conf.arg(help="picks the path; the scene picks the house")] = 0
     agent: Annotated[str, tyro.conf.arg(metavar="|".join(AGENTS), help="who drives")] = "follower"
-    max_episode_steps: Annotated[int, tyro.conf.arg(help="frames after which the episode is cut off")] = 10_000
+    max_episode_steps: Annotated[int, tyro.conf.arg(help="frames after which the episode is cut off")] = (
+        MAX_EPISODE_STEPS
+    )
 
 
 COMMANDS: dict[str, Callable[..., Run]] = {"run": Run}

@@ -13,7 +13,7 @@ from slamgym.agents import Agent
 from slamgym.env import HomeRobotEnv, Observation
 from slamgym.interrupt import deferred_interrupt
 from slamgym.scenes.occupancy import OccupancyGrid
-from slamgym.types import BoolArray, FloatArray, IntArray, SlamRecord, Summary
+from slamgym.types import FloatArray, IntArray, SlamRecord, Summary
 
 RobotEnv = gym.Env[Observation, NDArray[np.float32]]
 
@@ -56,13 +56,9 @@ class Episode:
     def T_world_cam(self) -> FloatArray:
         return np.array([step.T_world_cam for step in self.steps])
 
-    @property
-    def collisions(self) -> BoolArray:
-        return np.array([step.collision for step in self.steps], dtype=np.bool_)
-
 
 class EpisodeInterrupted(KeyboardInterrupt):
-    """Ctrl-C in the middle of an episode; `episode` holds what was driven until then."""
+    """Ctrl-C during an episode; `episode` holds what was driven until then, all of it if it came with the last step."""
 
     def __init__(self, episode: Episode) -> None:
         super().__init__()
@@ -94,7 +90,7 @@ def run_episode(
         except KeyboardInterrupt:  # a second Ctrl-C, or one that the agent raised
             end = "interrupted"
         episode = _episode(env, agent, seed, tuple(steps), end)
-    if end == "interrupted":
+    if interrupted() or end == "interrupted":
         raise EpisodeInterrupted(episode)
     return episode
 
