@@ -3,7 +3,7 @@
 import multiprocessing
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, Literal
+from typing import Any
 
 import gymnasium as gym
 import pandas as pd
@@ -15,7 +15,7 @@ from slamgym.camera import resolve_camera
 from slamgym.eval.episode import summarize_slam
 from slamgym.slam.backend import SlamConfig
 from slamgym.slam.record import run_sequence
-from slamgym.slam.session import SlamSession
+from slamgym.slam.session import SlamSession, Sync
 from slamgym.types import Frame
 
 
@@ -27,7 +27,7 @@ def main(
     camera: str = "default",
     repeats: int = 6,
     busy_loops: int = 8,
-    syncs: tuple[Literal["lockstep", "free"], ...] = ("lockstep", "free"),
+    syncs: tuple[Sync, ...] = ("lockstep", "free"),
 ) -> None:
     """Feed the frames of one drive `repeats` times to each sync mode, on an idle machine and beside `busy_loops`."""
     frames = drive(scene=scene, speed=speed, path_length_m=path_length_m, camera=camera, seed=seed)
@@ -58,7 +58,7 @@ def drive(seed: int, **params: Any) -> list[Frame]:
     return frames
 
 
-def run(config: SlamConfig, sync: Literal["lockstep", "free"], frames: list[Frame]) -> dict[str, Any]:
+def run(config: SlamConfig, sync: Sync, frames: list[Frame]) -> dict[str, Any]:
     """One row of the table."""
     with SlamSession("orbslam3", config, sync) as session:
         summary = summarize_slam(run_sequence(session, frames))

@@ -1,14 +1,11 @@
 """The pinhole camera model and the presets that the `camera` parameter names."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from math import isfinite
 from typing import Any
 
-import numpy as np
-
 from slamgym.errors import ConfigError, unknown_word
-from slamgym.types import FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,14 +38,6 @@ class PinholeCamera:
             raise ConfigError(f"camera: expected a finite principal point, got cx={self.cx}, cy={self.cy}")
         if len(self.distortion) not in (0, 4, 5) or not all(map(isfinite, self.distortion)):
             raise ConfigError(f"camera: expected no distortion, or finite k1 k2 p1 p2 [k3], got {self.distortion}")
-
-    @property
-    def K(self) -> FloatArray:
-        """Intrinsic matrix (3, 3)."""
-        return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
-
-    def as_dict(self) -> dict[str, Any]:
-        return asdict(self)
 
 
 CAMERAS: dict[str, PinholeCamera] = {

@@ -157,7 +157,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
     def _render_blurred(self) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """The exposure ends at the frame's stamp; depth is measured at its end."""
         assert self._renderer is not None
-        rgb, depth = self._renderer.render(self._camera_pose(1.0))
+        rgb, depth = self._renderer.render(self._poses[-1])
         if self.params.motion_blur == 0 or self._step == 0:
             return rgb, depth
         total = rgb.astype(np.float32)

@@ -8,7 +8,9 @@ from pydantic_core import ErrorDetails
 
 from slamgym.camera import CAMERAS, PinholeCamera, resolve_camera
 from slamgym.errors import ConfigError, unknown_word
+from slamgym.render import Lighting
 from slamgym.slam.backend import load_backend
+from slamgym.slam.session import Sync
 
 RADIUS_OF_TURN = 0.25
 """metres; `turn_rate=None` turns at speed / RADIUS_OF_TURN, so that another speed retimes the same path."""
@@ -57,7 +59,7 @@ class DriveParams(Params):
     depth_noise: Literal["none", "icl_nuim"] = Field("none", description="noise of the depth sensor")
     rgb_noise: float = Field(0.0, ge=0, le=128, description="standard deviation of the image noise, grey levels")
     motion_blur: float = Field(0.0, ge=0, le=1, description="exposure time as a share of the time between frames")
-    lighting: Literal["baked", "flat"] = Field("baked", description="baked light, or the bare textures")
+    lighting: Lighting = Field("baked", description="baked light, or the bare textures")
 
     @field_validator("camera", mode="before")
     @classmethod
@@ -87,7 +89,7 @@ class SlamParams(Params):
     """The SLAM in the loop, how it is fed, and what its tracking is worth."""
 
     slam: str = Field("orbslam3", description="SLAM backend, or 'module:class' of your own")
-    slam_sync: Literal["lockstep", "free"] = Field(
+    slam_sync: Sync = Field(
         "lockstep", description="lockstep: wait after each frame until the SLAM idles; free: feed at full speed"
     )
     stride: int = Field(0, ge=0, description="frames left out between two that the SLAM sees")

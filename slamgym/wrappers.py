@@ -57,6 +57,7 @@ class SlamWrapper(
         self._session: SlamSession | None = None
         self._next_session: SlamSession | None = None
         self._record: SlamRecord | None = None
+        self._summary: Summary | None = None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, Info]:
         if self._session is not None:
@@ -72,7 +73,7 @@ class SlamWrapper(
         self._session = session
         self._fed: list[Fed] = []
         self._steps = 0
-        self._record = None
+        self._record = self._summary = None
         self._feed(obs, info)
         # A SLAM runs only once and takes half a second to load: the next episode's loads while this one goes on.
         self._next_session = self._new_session()
@@ -97,7 +98,9 @@ class SlamWrapper(
 
     def conclude(self) -> Summary:
         """End the SLAM run, now if it still goes on, and return the results so far; may be called again."""
-        return {**summarize_slam(self.slam_record()), **self._robot.summarize_drive()}
+        if self._summary is None:
+            self._summary = {**summarize_slam(self.slam_record()), **self._robot.summarize_drive()}
+        return dict(self._summary)
 
     def slam_record(self) -> SlamRecord:
         """All that the evaluation needs of the episode's SLAM run; ends the run."""

@@ -1,5 +1,5 @@
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pytest
 
@@ -19,8 +19,8 @@ from slamgym.params import DriveParams, SlamParams, split_params
         ({"camera": {"widht": 3}}, "did you mean 'width'?"),
         ({"camera": {"width": 3}}, "missing: cx, cy, fx, fy, height"),
         ({"camera": 3}, "got 3"),
-        ({"camera": {**CAMERAS["small"].as_dict(), "width": "640"}}, "whole pixels"),
-        ({"camera": {**CAMERAS["small"].as_dict(), "distortion": 3}}, "tuple of numbers"),
+        ({"camera": {**asdict(CAMERAS["small"]), "width": "640"}}, "whole pixels"),
+        ({"camera": {**asdict(CAMERAS["small"]), "distortion": 3}}, "tuple of numbers"),
         ({"camera": replace(CAMERAS["small"], distortion=(0.1, 0.0, 0.0, 0.0))}, "without distortion"),
         ({"fps": 1e-9}, "fps"),
         ({"fps": 2, "speed": 1.0}, "at most 0.4 m between two frames, got 0.50 m"),
