@@ -4,7 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from slamgym.eval.metrics import ate, rpe, rpe_all_steps
+from slamgym.eval.accuracy import ate, rpe, rpe_all_steps
 from slamgym.eval.robustness import (
     completion,
     estimate_by_frame,

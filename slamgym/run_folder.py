@@ -21,9 +21,9 @@ import pandas as pd
 import yaml
 
 from slamgym.errors import OutputError
-from slamgym.eval.plots import plot_map
+from slamgym.eval.plots.drive_map import plot_map
 from slamgym.eval.robustness import estimate_by_frame, evaluated_map
-from slamgym.eval.trajectory import Trajectory, write_tum
+from slamgym.eval.trajectories import Trajectory, write_tum
 from slamgym.interrupt import deferred_interrupt
 from slamgym.rollout import Episode
 from slamgym.types import SlamRecord, TrackingState

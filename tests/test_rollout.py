@@ -10,8 +10,8 @@ import yaml
 import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
 from slamgym.errors import OutputError
-from slamgym.eval.align import align_rigid
-from slamgym.eval.trajectory import read_tum
+from slamgym.eval.accuracy import align_rigid
+from slamgym.eval.trajectories import read_tum
 from slamgym.rollout import EpisodeInterrupted, run_episode
 from slamgym.run_folder import write_run
 

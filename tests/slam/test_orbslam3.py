@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from slamgym.camera import PinholeCamera
-from slamgym.eval.metrics import ate
-from slamgym.eval.trajectory import read_tum
+from slamgym.eval.accuracy import ate
+from slamgym.eval.trajectories import read_tum
 from slamgym.slam.backend import SlamConfig
 from slamgym.slam.orbslam3 import OrbSlam3Options, read_saved, settings
 from slamgym.slam.session import SlamSession

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from slamgym.eval.align import align_rigid
+from slamgym.eval.accuracy import align_rigid
 from slamgym.eval.robustness import estimate_by_frame, find_losses, most_frequent_map
 from slamgym.types import BoolArray, FloatArray, SlamRecord, Summary
 

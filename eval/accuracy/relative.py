@@ -1,4 +1,4 @@
-"""Absolute and relative trajectory errors.
+"""Relative pose error.
 
 Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012. All functions take poses (N, 4, 4) in
 pairs: `ref_T` the truth, `est_T` the estimate at the same frame.
@@ -9,32 +9,11 @@ from typing import NamedTuple, Self, cast
 
 import numpy as np
 
-from slamgym.errors import TrajectoryError, unknown_word
-from slamgym.eval.align import align_rigid
+from slamgym.errors import TrajectoryError
+from slamgym.eval.accuracy.error_stats import ErrorStats
+from slamgym.eval.accuracy.pose_pairs import check_finite, check_shapes
 from slamgym.geometry import quaternion_xyzw
 from slamgym.types import BoolArray, FloatArray, IntArray
-
-ALIGNMENTS = ("rigid", "none")
-
-
-@dataclass(frozen=True, slots=True)
-class ErrorStats:
-    """Statistics of errors, in their unit; std is that of the population. All are NaN when there is no error at all."""
-
-    rmse: float
-    mean: float
-    median: float
-    std: float
-    min: float
-    max: float
-
-    @classmethod
-    def of(cls, errors: FloatArray) -> Self:
-        if not len(errors):
-            return cls(*[np.nan] * 6)
-        rmse = np.sqrt(np.mean(errors**2))
-        values = (rmse, errors.mean(), np.median(errors), errors.std(), errors.min(), errors.max())
-        return cls(*map(float, values))
 
 
 class RpeStats(NamedTuple):
@@ -49,22 +28,6 @@ class RpeOverSteps(NamedTuple):
 
     trans_rmse_m: float
     rot_mean_deg: float
-
-
-def ate(ref_T: FloatArray, est_T: FloatArray, alignment: str = "rigid") -> ErrorStats:
-    """Absolute trajectory error: distances, metres, between positions after the estimate is aligned to the truth.
-
-    alignment: "rigid" (needs 3 poses) or "none". Raises TrajectoryError.
-    """
-    if alignment not in ALIGNMENTS:
-        raise TrajectoryError(unknown_word("alignment", alignment, ALIGNMENTS))
-    _check_shapes(ref_T, est_T)
-    _check_finite(ref_T, est_T)
-    ref, est = ref_T[:, :3, 3], est_T[:, :3, 3]
-    if alignment == "rigid":
-        T_ref_est = align_rigid(est, ref)
-        est = est @ T_ref_est[:3, :3].T + T_ref_est[:3, 3]
-    return ErrorStats.of(np.linalg.norm(ref - est, axis=1))
 
 
 def rpe(
@@ -141,12 +104,12 @@ class _PosePairs:
 
     @classmethod
     def of(cls, ref_T: FloatArray, est_T: FloatArray, tracked: BoolArray | None, map_ids: IntArray | None) -> Self:
-        _check_shapes(ref_T, est_T)
+        check_shapes(ref_T, est_T)
         tracked = np.ones(len(ref_T), dtype=np.bool_) if tracked is None else tracked
         map_ids = np.zeros(len(ref_T), dtype=np.int64) if map_ids is None else map_ids
         map_ids = np.where(tracked, map_ids, -1)
         est_T = np.where((map_ids >= 0)[:, None, None], est_T, np.eye(4))
-        _check_finite(ref_T, est_T)
+        check_finite(ref_T, est_T)
         W = np.tile(np.eye(4), (len(ref_T), 1, 1))
         W[:, :3, :3] = ref_T[:, :3, :3] @ est_T[:, :3, :3].swapaxes(1, 2)
         return cls(
@@ -176,13 +139,3 @@ class _PosePairs:
 def _norm_sq(vectors: FloatArray) -> FloatArray:
     """Squared lengths (N,) of vectors (k, N)."""
     return cast(FloatArray, np.einsum("kn,kn->n", vectors, vectors))
-
-
-def _check_shapes(ref_T: FloatArray, est_T: FloatArray) -> None:
-    if ref_T.shape != est_T.shape or ref_T.shape[1:] != (4, 4):
-        raise TrajectoryError(f"expected poses (N, 4, 4) in pairs, got shapes {ref_T.shape} and {est_T.shape}")
-
-
-def _check_finite(ref_T: FloatArray, est_T: FloatArray) -> None:
-    if not (np.isfinite(ref_T).all() and np.isfinite(est_T).all()):
-        raise TrajectoryError("expected finite poses, got NaN or infinity: leave them out, or mask them as not tracked")

@@ -1,4 +1,4 @@
-"""What accuracy alone hides: which frames were tracked in which map, losses, status, success.
+"""Which frames were tracked, losses, status, success.
 
 A frame is tracked when its state was OK as it was fed; poses that a SLAM writes for other frames are guesses, and never
 count.
@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from slamgym.geometry import inverse, rotation_angle
-from slamgym.types import BoolArray, FloatArray, IntArray, LossEvent, SlamEvent, SlamRecord, TrackingState
+from slamgym.types import BoolArray, FloatArray, LossEvent, SlamEvent, SlamRecord, TrackingState
 
 _OUTCOMES = {
     SlamEvent.RELOCALIZED: "relocalized",
@@ -72,47 +72,6 @@ def _motion(T: FloatArray) -> tuple[float, float]:
 def seconds_between(record: SlamRecord, first: int, last: int) -> float:
     """Time from one fed frame to another, seconds."""
     return float(record.stamps_ns[last] - record.stamps_ns[first]) * 1e-9
-
-
-def final_by_frame(record: SlamRecord) -> tuple[FloatArray, IntArray]:
-    """Final poses (N, 4, 4) and their maps (N,) by fed frame: NaN and -1 where the frame was not tracked, or where no
-    final pose has its stamp.
-    """
-    T = np.full((len(record.stamps_ns), 4, 4), np.nan)
-    map_id = np.full(len(record.stamps_ns), -1, dtype=np.int64)
-    stamps, final = record.stamps_ns, record.final
-    _, fed, rows = np.intersect1d(stamps, final.stamps_ns, assume_unique=True, return_indices=True)
-    ok = tracked_frames(record)[fed]
-    T[fed[ok]] = final.T_map_cam[rows[ok]]
-    map_id[fed[ok]] = final.map_id[rows[ok]]
-    return T, map_id
-
-
-def estimate_by_frame(record: SlamRecord) -> tuple[FloatArray, IntArray]:
-    """The final poses and maps (`final_by_frame`), or those emitted frame by frame of a SLAM that crashed or hung and
-    left no final trajectory.
-    """
-    if record.outcome and not len(record.final.stamps_ns):
-        return record.T_map_cam, np.where(tracked_frames(record), record.map_id, -1)
-    return final_by_frame(record)
-
-
-def most_frequent_map(map_ids: IntArray) -> int:
-    """The map id with the most frames, the earliest of those that tie; -1 when no frame is in a map."""
-    ids, first, count = np.unique(map_ids[map_ids >= 0], return_index=True, return_counts=True)
-    return int(ids[np.lexsort((first, -count))[0]]) if len(ids) else -1
-
-
-def evaluated_map(record: SlamRecord) -> int:
-    """The largest map by tracked frames, the earliest of those that tie; -1 when there is none."""
-    return most_frequent_map(estimate_by_frame(record)[1])
-
-
-def completion(record: SlamRecord) -> float:
-    """Share of all fed frames that is tracked in the evaluated map; 0 when nothing was fed."""
-    _, maps = estimate_by_frame(record)
-    best = most_frequent_map(maps)
-    return float(np.mean(maps == best)) if best >= 0 else 0.0
 
 
 def status(record: SlamRecord) -> str:

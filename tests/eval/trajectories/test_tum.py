@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from slamgym.errors import OutputError, TrajectoryError
-from slamgym.eval.trajectory import Trajectory, associate, read_tum, write_tum
+from slamgym.eval.trajectories import Trajectory, associate, read_tum, write_tum
 from slamgym.geometry import from_quaternion
 
 POSE = "1.0 2.0 3.0 0 0 0 1"

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from slamgym.errors import TrajectoryError
-from slamgym.eval.align import align_rigid
-from slamgym.eval.metrics import ErrorStats, ate, rpe, rpe_all_steps, rpe_pooled
-from slamgym.eval.trajectory import associate, read_tum
+from slamgym.eval.accuracy import ErrorStats, align_rigid, ate, rpe, rpe_all_steps, rpe_pooled
+from slamgym.eval.trajectories import associate, read_tum
 from slamgym.geometry import from_quaternion
 
 seeds = st.integers(0, 2**32 - 1)
