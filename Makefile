@@ -4,13 +4,16 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test check bench format setup clean system-libraries
+.PHONY: demo test test-slow check bench format setup clean system-libraries
 
 demo: setup
 	$(BIN)/python examples/speed_sweep.py
 
 test: setup
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
+
+test-slow: setup
+	$(BIN)/python -m pytest -m slow $(PYTEST_ARGS)
 
 check: setup
 	$(BIN)/ruff check .

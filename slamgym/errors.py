@@ -28,6 +28,10 @@ class TrajectoryError(SlamgymError, ValueError):
     """A trajectory, or a file of one, is malformed or cannot be evaluated."""
 
 
+class TrajectoryWarning(UserWarning):
+    """Something about a trajectory was repaired, or looks wrong; what was done about it."""
+
+
 class OutputError(SlamgymError):
     """Results cannot be written where they should go."""
 
