@@ -1,63 +1,66 @@
 """The summary of one SLAM run: what `info["episode_slam"]` and `episode.json` hold."""
 
-from dataclasses import asdict
-
 import numpy as np
 
-from slamgym.eval.accuracy import ate, rpe, rpe_all_steps
+from slamgym.eval.accuracy import ate
 from slamgym.eval.robustness import (
-    completion,
     estimate_by_frame,
     final_by_frame,
     find_losses,
+    held_ate,
     most_frequent_map,
     seconds_between,
     status,
     success,
     tracked_frames,
 )
-from slamgym.types import FloatArray, SlamEvent, SlamRecord, Summary
+from slamgym.eval.summary import (
+    FramePoses,
+    accuracy_summary,
+    align_frames,
+    correctness_summary,
+    motion_summary,
+    tracking_summary,
+)
+from slamgym.types import FloatArray, IntArray, SlamEvent, SlamRecord, Summary
 
 
 def summarize_slam(record: SlamRecord) -> Summary:
     """Accuracy and robustness of one SLAM run, in JSON types; what cannot be told is NaN.
 
     - `status`: "ok", "lost", "init_failed", "crashed" or "timeout"; `success`: "ok" and no loss.
-    - `ate_rmse_m`: of the final trajectory; `ate_online_rmse_m`: of the poses as they were emitted, of one online map
-      where several were merged later. Both over the evaluated map, after rigid alignment, NaN below 3 poses.
-    - `rpe_trans_rmse_m`, `rpe_rot_mean_deg`: over all steps (`rpe_all_steps`); `rpe_step_trans_rmse_m`,
-      `rpe_step_rot_mean_deg`: over a step of one fed frame. Final trajectory, evaluated map.
-    - `completion`: fed frames tracked in the evaluated map / all fed frames.
+    - all of `accuracy_summary`: of the final trajectory in the evaluated map, after rigid alignment; NaN for a SLAM
+      that crashed or hung before it gave one. `ate_online_rmse_m`: ATE of the poses as they were emitted, of one online
+      map where several were merged later. ATE is NaN below 3 poses.
+    - all of `tracking_summary` and `correctness_summary`: over the fed frames, of which those in the evaluated map are
+      tracked; of a SLAM without a final trajectory by the poses as they were emitted.
+    - `ate_held_rmse_m`: ATE over all fed frames when the last pose is held where there is none (`held_ate`).
     - `frames_fed`; `frames_tracked`: those with state OK, in any map; `tracked_points_median`: over these.
     - `maps`: maps that frames were tracked in as they were fed; `loops_closed`: loops seen to close.
-    - `losses`: list of `LossEvent`s as mappings; `loss_count`.
-    - `time_to_initialize_s`, `time_to_first_loss_s`: from the first fed frame.
+    - `time_to_initialize_s`: from the first fed frame.
     - `lockstep_overruns`: frames for which lock-step gave up waiting; above 0 the result depends on the computer.
+    - all of `motion_summary`, of the fed frames.
     """
+    final, estimate = (_frames(record, *by_frame(record)) for by_frame in (final_by_frame, estimate_by_frame))
     return {
         "status": status(record),
         "success": success(record),
-        **_final_accuracy(record),
+        **accuracy_summary(align_frames(final, "se3")[0]),
         "ate_online_rmse_m": _online_ate(record),
-        "completion": completion(record),
+        "ate_held_rmse_m": held_ate(*estimate[1:4]).rmse,
+        **tracking_summary(record.stamps_ns, record.T_world_cam, estimate.tracked, find_losses(record)),
+        **correctness_summary(align_frames(estimate, "se3")[0], int(tracked_frames(record).sum())),
         **_counts(record),
-        **_losses(record),
         "lockstep_overruns": record.lockstep_overruns,
+        **motion_summary(record.stamps_ns, record.T_world_cam),
     }
 
 
-def _final_accuracy(record: SlamRecord) -> Summary:
-    T, map_id = final_by_frame(record)
-    best = (map_id == most_frequent_map(map_id)) & (map_id >= 0)
-    step = rpe(record.T_world_cam, T, 1, best)
-    all_steps = rpe_all_steps(record.T_world_cam, T, best)
-    return {
-        "ate_rmse_m": _ate_rmse(record.T_world_cam[best], T[best]),
-        "rpe_trans_rmse_m": all_steps.trans_rmse_m,
-        "rpe_rot_mean_deg": all_steps.rot_mean_deg,
-        "rpe_step_trans_rmse_m": step.trans_m.rmse,
-        "rpe_step_rot_mean_deg": step.rot_deg.mean,
-    }
+def _frames(record: SlamRecord, T_map_cam: FloatArray, map_id: IntArray) -> FramePoses:
+    """The fed frames, tracked where they are in the largest map."""
+    return FramePoses(
+        record.stamps_ns, record.T_world_cam, T_map_cam, (map_id == most_frequent_map(map_id)) & (map_id >= 0)
+    )
 
 
 def _online_ate(record: SlamRecord) -> float:
@@ -69,7 +72,7 @@ def _online_ate(record: SlamRecord) -> float:
 
 
 def _ate_rmse(ref_T: FloatArray, est_T: FloatArray) -> float:
-    return ate(ref_T, est_T).rmse if len(ref_T) >= 3 else np.nan
+    return ate(ref_T, est_T).trans_m.rmse if len(ref_T) >= 3 else np.nan
 
 
 def _counts(record: SlamRecord) -> Summary:
@@ -81,13 +84,4 @@ def _counts(record: SlamRecord) -> Summary:
         "maps": len(np.unique(record.map_id[ok])),
         "loops_closed": record.events.count(SlamEvent.LOOP_CLOSED),
         "time_to_initialize_s": seconds_between(record, 0, int(np.argmax(ok))) if ok.any() else np.nan,
-    }
-
-
-def _losses(record: SlamRecord) -> Summary:
-    losses = find_losses(record)
-    return {
-        "losses": [asdict(loss) for loss in losses],
-        "loss_count": len(losses),
-        "time_to_first_loss_s": losses[0].start_s if losses else np.nan,
     }

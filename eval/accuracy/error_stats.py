@@ -1,7 +1,7 @@
 """Statistics of errors."""
 
 from dataclasses import dataclass
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -26,3 +26,14 @@ class ErrorStats:
         rmse = np.sqrt(np.mean(errors**2))
         values = (rmse, errors.mean(), np.median(errors), errors.std(), errors.min(), errors.max())
         return cls(*map(float, values))
+
+
+class PoseErrorStats(NamedTuple):
+    """Statistics of pose errors: of the translation in metres, of the rotation angle in degrees."""
+
+    trans_m: ErrorStats
+    rot_deg: ErrorStats
+
+    @classmethod
+    def of(cls, trans_m: FloatArray, rot_deg: FloatArray) -> Self:
+        return cls(ErrorStats.of(trans_m), ErrorStats.of(rot_deg))

@@ -6,16 +6,15 @@ from typing import Protocol
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
-from slamgym.eval.accuracy import align_rigid
+from slamgym.eval.accuracy import align
+from slamgym.eval.plots.names import percent
+from slamgym.eval.plots.style import COLOURS, new_figure
+from slamgym.eval.plots.top_view import draw_lost, draw_truth, set_top_view
 from slamgym.eval.robustness import estimate_by_frame, find_losses, most_frequent_map
 from slamgym.types import BoolArray, FloatArray, SlamRecord, Summary
 
-# Okabe and Ito's colours, which colour-blind people can tell apart.
-TRUTH, ESTIMATE, LOST = "#000000", "#0072B2", "#D55E00"
-OTHER_MAPS = ("#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+ESTIMATE, OTHER_MAPS = COLOURS[0], COLOURS[1:]
 
 
 class TopView(Protocol):
@@ -42,17 +41,14 @@ def plot_map(
     Every map of the SLAM is aligned to the truth on its own; the evaluated one is drawn solid, others dashed. The
     title takes `status`, `ate_rmse_m` and `completion` from `summary`. Raises OSError.
     """
-    figure = Figure(figsize=_figure_size(grid), dpi=120, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(*_figure_size(grid))
     axes = figure.add_subplot()
     _draw_grid(axes, grid)
     axes.plot(*path_xy.T, color="0.45", linestyle=":", linewidth=1.5, label="planned path")
-    true_xy = T_world_cam[:, :2, 3]
-    axes.plot(*true_xy.T, color=TRUTH, linewidth=2.0, label="true path")
+    draw_truth(axes, T_world_cam[:, :2, 3])
     if slam is not None:
         _draw_estimate(axes, slam)
         _draw_losses(axes, slam)
-    _draw_ends(axes, true_xy)
     axes.set_title(_title(summary), loc="left")
     figure.legend(loc="outside right upper", frameon=False)
     figure.savefig(png, format="png")
@@ -70,9 +66,7 @@ def _draw_grid(axes: Axes, grid: TopView) -> None:
     x_min, y_min = grid.origin_xy
     extent = (x_min, x_min + nx * grid.resolution_m, y_min, y_min + ny * grid.resolution_m)
     axes.imshow(grid.occupied, origin="lower", extent=extent, cmap="Greys", vmin=0.0, vmax=4.0, interpolation="nearest")
-    axes.set_aspect("equal")
-    axes.set_xlabel("x (m)")
-    axes.set_ylabel("y (m)")
+    set_top_view(axes)
 
 
 def _draw_estimate(axes: Axes, slam: SlamRecord) -> None:
@@ -92,29 +86,21 @@ def _aligned_xy(T_world_cam: FloatArray, T_map_cam: FloatArray, frames: BoolArra
     """Estimated positions (N, 2) in the world; NaN, a gap in the line, outside `frames` or where those are too few."""
     xy = np.full((len(frames), 2), np.nan)
     if np.count_nonzero(frames) >= 3:
-        estimate = T_map_cam[frames, :3, 3]
-        T_world_map = align_rigid(estimate, T_world_cam[frames, :3, 3])
-        xy[frames] = (estimate @ T_world_map[:3, :3].T + T_world_map[:3, 3])[:, :2]
+        estimate = T_map_cam[frames]
+        xy[frames] = align(T_world_cam[frames], estimate).apply(estimate)[:, :2, 3]
     return xy
 
 
 def _draw_losses(axes: Axes, slam: SlamRecord) -> None:
     xy = slam.T_world_cam[:, :2, 3]
     for i, loss in enumerate(find_losses(slam)):
-        lost = xy[loss.start_frame : loss.end_frame + 2]
-        # A broad band below the true path, and its start above all: a loss may be shorter than the line is wide.
-        axes.plot(*lost.T, color=LOST, linewidth=7.0, solid_capstyle="butt", zorder=1.5)
-        label = "lost, from the cross on" if i == 0 else None
-        axes.plot(*lost[0], color=LOST, marker="X", markersize=9, markeredgecolor="white", zorder=4, label=label)
-
-
-def _draw_ends(axes: Axes, true_xy: FloatArray) -> None:
-    for label, marker, xy in (("start", "o", true_xy[0]), ("end", "s", true_xy[-1])):
-        axes.plot(*xy, marker=marker, label=label, markersize=12, color=TRUTH, markerfacecolor="none", linestyle="none")
+        cross = draw_lost(axes, xy[loss.start_frame : loss.end_frame + 2])
+        if i > 0:
+            cross.set_label(None)
 
 
 def _title(summary: Summary) -> str:
     if "status" not in summary:
         return "no SLAM"
     ate = "no ATE" if isnan(summary["ate_rmse_m"]) else f"ATE {summary['ate_rmse_m']:.3f} m"
-    return f"{summary['status']}, {ate}, completion {summary['completion']:.0%}"
+    return f"{summary['status']}, {ate}, completion {percent(summary['completion'])}"

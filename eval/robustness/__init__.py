@@ -1,23 +1,60 @@
 """Robustness: what accuracy alone hides."""
 
+from slamgym.eval.robustness.completion import Completion, Exposure, completion, exposure, total_exposure
+from slamgym.eval.robustness.correct_rate import (
+    correct_poses,
+    correct_rate,
+    correct_rate_of_tracking,
+    relocalization_score,
+)
+from slamgym.eval.robustness.error_area import error_area
 from slamgym.eval.robustness.evaluated_map import (
-    completion,
     estimate_by_frame,
+    evaluated_frames,
     evaluated_map,
     final_by_frame,
     most_frequent_map,
 )
-from slamgym.eval.robustness.losses import find_losses, seconds_between, status, success, tracked_frames
+from slamgym.eval.robustness.failure_policy import POLICIES, Average, average
+from slamgym.eval.robustness.failure_rates import FailureRates, failure_rates, status_counts
+from slamgym.eval.robustness.gaps import covered_frames, find_gaps
+from slamgym.eval.robustness.held_pose import held_ate, hold_last_pose
+from slamgym.eval.robustness.losses import STATUSES, find_losses, seconds_between, status, success, tracked_frames
+from slamgym.eval.robustness.precision_recall import PrecisionRecall, precision_recall, precision_recall_area
 
 __all__ = [
+    "POLICIES",
+    "STATUSES",
+    "Average",
+    "Completion",
+    "Exposure",
+    "FailureRates",
+    "PrecisionRecall",
+    "average",
     "completion",
+    "correct_poses",
+    "correct_rate",
+    "correct_rate_of_tracking",
+    "covered_frames",
+    "error_area",
     "estimate_by_frame",
+    "evaluated_frames",
     "evaluated_map",
+    "exposure",
+    "failure_rates",
     "final_by_frame",
+    "find_gaps",
     "find_losses",
+    "held_ate",
+    "hold_last_pose",
     "most_frequent_map",
+    "precision_recall",
+    "precision_recall_area",
+    "relocalization_score",
     "seconds_between",
     "status",
+    "status_counts",
     "success",
+    "total_exposure",
     "tracked_frames",
 ]

@@ -1,9 +1,11 @@
 """Final poses by fed frame, and the map that is evaluated: poses of two maps are never aligned together."""
 
+from typing import cast
+
 import numpy as np
 
 from slamgym.eval.robustness.losses import tracked_frames
-from slamgym.types import FloatArray, IntArray, SlamRecord
+from slamgym.types import BoolArray, FloatArray, IntArray, SlamRecord
 
 
 def final_by_frame(record: SlamRecord) -> tuple[FloatArray, IntArray]:
@@ -40,8 +42,7 @@ def evaluated_map(record: SlamRecord) -> int:
     return most_frequent_map(estimate_by_frame(record)[1])
 
 
-def completion(record: SlamRecord) -> float:
-    """Share of all fed frames that is tracked in the evaluated map; 0 when nothing was fed."""
+def evaluated_frames(record: SlamRecord) -> BoolArray:
+    """Whether each fed frame is tracked in the evaluated map (N,): the `tracked` of plain trajectories."""
     _, maps = estimate_by_frame(record)
-    best = most_frequent_map(maps)
-    return float(np.mean(maps == best)) if best >= 0 else 0.0
+    return cast(BoolArray, (maps == most_frequent_map(maps)) & (maps >= 0))

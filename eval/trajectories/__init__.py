@@ -1,7 +1,23 @@
 """Trajectories: their files, which poses of two belong together, how they move."""
 
-from slamgym.eval.trajectories.association import associate
+from slamgym.eval.trajectories.association import associate, match_stamps
+from slamgym.eval.trajectories.attributes import SequenceAttributes, sequence_attributes, step_sizes
+from slamgym.eval.trajectories.files import FORMATS, guess_format, read_trajectory
+from slamgym.eval.trajectories.stamps import read_stamps
 from slamgym.eval.trajectories.trajectory import Trajectory
 from slamgym.eval.trajectories.tum import read_tum, write_tum
 
-__all__ = ["Trajectory", "associate", "read_tum", "write_tum"]
+__all__ = [
+    "FORMATS",
+    "SequenceAttributes",
+    "Trajectory",
+    "associate",
+    "guess_format",
+    "match_stamps",
+    "read_stamps",
+    "read_trajectory",
+    "read_tum",
+    "sequence_attributes",
+    "step_sizes",
+    "write_tum",
+]

@@ -1,45 +1,50 @@
 """Trajectory files in the format of the TUM RGB-D benchmark."""
 
-import math
-from decimal import Decimal, InvalidOperation
+from collections.abc import Callable
+from decimal import Decimal
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from slamgym.errors import OutputError, TrajectoryError, unknown_word
+from slamgym.errors import OutputError
+from slamgym.eval.trajectories.poses import FilePoses, to_trajectory
+from slamgym.eval.trajectories.text import (
+    MAX_NANOSECONDS,
+    SMALLEST_NANOSECONDS,
+    ParsedLine,
+    columns,
+    first_data_line,
+    numbers,
+    read_table,
+    seconds_to_ns,
+    shorten,
+    whole_ns,
+    wrong_columns,
+)
 from slamgym.eval.trajectories.trajectory import Trajectory
-from slamgym.geometry import from_quaternion, quaternion_xyzw
+from slamgym.geometry import quaternion_xyzw
 
-_NS_PER_S = 1_000_000_000
 _COLUMNS = "timestamp tx ty tz qx qy qz qw"
-_MAX_STAMP_NS = 2**63 - 1
 
 
-def read_tum(path: Path | str, *, repeated_stamps: str = "error") -> Trajectory:
+def read_tum(path: Path | str, *, repair: bool = False) -> Trajectory:
     """Read a file with a pose a line, `timestamp tx ty tz qx qy qz qw` in seconds and metres; '#' starts a comment.
 
-    Stamps are read as decimal numbers, exact to the nanosecond. repeated_stamps: "error", or "last" to keep the last
-    pose of one stamp, as the TUM tools do. Raises TrajectoryError with file and line.
+    As `read_trajectory` does with format "tum". Raises TrajectoryError with file and line.
     """
-    if repeated_stamps not in ("error", "last"):
-        raise TrajectoryError(unknown_word("way with repeated stamps", repeated_stamps, ("error", "last")))
-    poses: dict[int, tuple[float, ...]] = {}
-    last_ns = None
-    for number, line in enumerate(_read_lines(Path(path)), start=1):
-        text = line.split("#", 1)[0]
-        if not text.strip():
-            continue
-        try:
-            stamp_ns, pose = _parse_pose(text)
-            _check_order(last_ns, stamp_ns, repeats_allowed=repeated_stamps == "last")
-        except ValueError as error:
-            raise TrajectoryError(f"{path}:{number}: {error}") from None
-        poses[stamp_ns] = pose
-        last_ns = stamp_ns
-    if not poses:
-        raise TrajectoryError(f"{path}: expected lines '{_COLUMNS}', got no pose at all")
-    values = np.array(list(poses.values()))
-    return Trajectory(np.array(list(poses), dtype=np.int64), from_quaternion(values[:, :3], values[:, 3:]))
+    return to_trajectory(tum_poses(Path(path)), repair=repair)
+
+
+def tum_poses(path: Path) -> FilePoses:
+    """The poses of a TUM file as they are; stamps exact to the nanosecond.
+
+    When the first stamp can only be in nanoseconds (ORB-SLAM3's EuRoC program writes such files), all have to be.
+    """
+    in_ns = _starts_in_ns(path)
+    table = read_table(path, partial(_parse, _large_ns if in_ns else seconds_to_ns))
+    values = table.values.reshape(-1, 7)
+    return FilePoses(path, table.lines, table.stamps_ns, values[:, :3], values[:, 3:], in_ns)
 
 
 def write_tum(path: Path | str, trajectory: Trajectory) -> None:
@@ -54,50 +59,22 @@ def write_tum(path: Path | str, trajectory: Trajectory) -> None:
         raise OutputError(f"cannot write the trajectory {path}: {error.strerror}") from error
 
 
-def _read_lines(path: Path) -> list[str]:
-    try:
-        return path.read_text(encoding="utf-8-sig").splitlines()
-    except OSError as error:
-        raise TrajectoryError(f"cannot read the trajectory {path}: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise TrajectoryError(f"{path}: expected text lines '{_COLUMNS}', got a binary file") from error
-
-
-def _parse_pose(text: str) -> tuple[int, tuple[float, ...]]:
-    words = text.split()
+def _parse(stamp: Callable[[str], int], text: str) -> ParsedLine:
+    words = columns(text)
     if len(words) != 8:
-        raise ValueError(f"expected the 8 columns '{_COLUMNS}', got {len(words)}")
-    pose = tuple(_number(word) for word in words[1:])
-    if not any(pose[3:]):
-        raise ValueError("expected a rotation as quaternion, got one of length 0")
-    return _stamp_ns(words[0]), pose
+        raise wrong_columns("tum", f"the 8 columns '{_COLUMNS}'", text, len(words))
+    return [stamp(words[0])], numbers(words[1:])
 
 
-def _number(word: str) -> float:
+def _starts_in_ns(path: Path) -> bool:
     try:
-        value = float(word)
+        return SMALLEST_NANOSECONDS <= abs(float((first_data_line(path) or "0").split()[0])) < MAX_NANOSECONDS
     except ValueError:
-        raise ValueError(f"expected a number, got {word!r}") from None
-    if not math.isfinite(value):
-        raise ValueError(f"expected a finite number, got {word!r}")
-    return value
+        return False
 
 
-def _stamp_ns(word: str) -> int:
-    """Nanoseconds of a decimal number of seconds; a float would round a Unix time to some 200 ns."""
-    try:
-        stamp_ns = int((Decimal(word) * _NS_PER_S).to_integral_value())
-    except (InvalidOperation, ValueError, OverflowError):
-        raise ValueError(f"expected a stamp in seconds, got {word!r}") from None
-    if abs(stamp_ns) > _MAX_STAMP_NS:
-        raise ValueError(f"expected a stamp in seconds, got {word!r}: is it in nanoseconds?")
+def _large_ns(word: str) -> int:
+    stamp_ns = whole_ns(word)
+    if abs(stamp_ns) < SMALLEST_NANOSECONDS:
+        raise ValueError(f"expected a stamp in nanoseconds like the first one of the file, got {shorten(word)}")
     return stamp_ns
-
-
-def _check_order(last_ns: int | None, stamp_ns: int, *, repeats_allowed: bool) -> None:
-    if last_ns is None or stamp_ns > last_ns:
-        return
-    if stamp_ns < last_ns:
-        raise ValueError("expected stamps in increasing order, got one before that of the pose above: sort the file")
-    if not repeats_allowed:
-        raise ValueError("expected every stamp once, got that of the pose above again: keep one, or read the 'last'")

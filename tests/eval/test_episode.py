@@ -5,15 +5,27 @@ import numpy as np
 import pytest
 
 from slamgym.eval.episode import summarize_slam
+from slamgym.eval.trajectories import SequenceAttributes
 from slamgym.types import SlamEvent
 
-KEYS = {
-    "status", "success", "ate_rmse_m", "ate_online_rmse_m", "rpe_trans_rmse_m", "rpe_rot_mean_deg",
-    "rpe_step_trans_rmse_m", "rpe_step_rot_mean_deg", "completion", "frames_fed", "frames_tracked", "maps",
-    "loops_closed", "losses", "loss_count", "time_to_first_loss_s", "time_to_initialize_s", "tracked_points_median",
+STATS = ("rmse", "mean", "median", "std", "min", "max")
+ACCURACY = [
+    *(f"ate_{name}_m" for name in STATS), *(f"ate_rot_{name}_deg" for name in STATS), "ate_online_rmse_m",
+    "rpe_trans_rmse_m", "rpe_rot_mean_deg", "rpe_step_trans_rmse_m", "rpe_step_rot_mean_deg",
+]  # fmt: skip
+FAR_APART = [
+    "rpe_second_trans_rmse_m", "rpe_second_rot_mean_deg", "rpe_metre_trans_rmse_m", "rpe_metre_rot_mean_deg",
+    "drift_trans_percent", "drift_rot_deg_per_m",
+]  # fmt: skip
+ROBUSTNESS = {
+    "status", "success", "ate_held_rmse_m", "completion", "completion_time", "completion_distance", "correct_rate",
+    "relocalization_score", "f1_area", "frames_fed", "frames_tracked", "maps", "loops_closed", "losses", "loss_count",
+    "losses_per_minute", "losses_per_metre", "mean_time_between_losses_s", "mean_distance_between_losses_m",
+    "mean_time_to_relocalize_s", "time_to_first_loss_s", "time_to_initialize_s", "tracked_points_median",
     "lockstep_overruns",
 }  # fmt: skip
-ACCURACY = [key for key in sorted(KEYS) if key.startswith(("ate", "rpe"))]
+MOTION = set(SequenceAttributes._fields) - {"frames"}
+KEYS = {*ACCURACY, *FAR_APART, *ROBUSTNESS, *MOTION}
 
 
 def is_nan(summary, *keys):

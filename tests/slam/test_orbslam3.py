@@ -81,12 +81,13 @@ def run(frames, config=CONFIG):
 
 def online_ate(online, true_poses, map_id):
     pairs = [(T, r.T_map_cam) for r, T in zip(online, true_poses.values(), strict=True) if r.map_id == map_id]
-    return ate(*map(np.array, zip(*pairs, strict=True))).rmse
+    return ate(*map(np.array, zip(*pairs, strict=True))).trans_m.rmse
 
 
 def final_ate(final, true_poses, map_id):
     chosen = final.map_id == map_id
-    return ate(np.array([true_poses[stamp] for stamp in final.stamps_ns[chosen]]), final.T_map_cam[chosen]).rmse
+    truth = np.array([true_poses[stamp] for stamp in final.stamps_ns[chosen]])
+    return ate(truth, final.T_map_cam[chosen]).trans_m.rmse
 
 
 def test_accuracy_on_real_frames(real_frames):

@@ -7,7 +7,8 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from slamgym.eval.episode import summarize_slam
-from slamgym.eval.plots.drive_map import ESTIMATE, LOST, OTHER_MAPS, plot_map
+from slamgym.eval.plots.drive_map import ESTIMATE, OTHER_MAPS, plot_map
+from slamgym.eval.plots.style import LOST
 from slamgym.types import BoolArray, FloatArray, SlamEvent
 
 

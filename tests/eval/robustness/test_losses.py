@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from slamgym.eval.robustness import (
-    completion,
     estimate_by_frame,
+    evaluated_frames,
     evaluated_map,
     final_by_frame,
     find_losses,
@@ -11,6 +11,10 @@ from slamgym.eval.robustness import (
     success,
 )
 from slamgym.types import SlamEvent
+
+
+def share(frames):
+    return frames.mean() if len(frames) else 0.0
 
 
 def runs(record):
@@ -71,7 +75,7 @@ def test_status_and_success(make_record, online, outcome, expected, succeeds):
 
 
 @pytest.mark.parametrize(
-    ("online", "final", "expected_map", "expected_completion"),
+    ("online", "final", "expected_map", "expected_share"),
     [
         ("", "", -1, 0.0),
         ("....", "....", -1, 0.0),
@@ -85,16 +89,16 @@ def test_status_and_success(make_record, online, outcome, expected, succeeds):
         ("0000", "....", -1, 0.0),
     ],
 )
-def test_evaluated_map_and_completion(make_record, online, final, expected_map, expected_completion):
+def test_evaluated_map_and_its_frames(make_record, online, final, expected_map, expected_share):
     record = make_record(online, final)
     assert evaluated_map(record) == expected_map
-    assert completion(record) == pytest.approx(expected_completion)
+    assert share(evaluated_frames(record)) == pytest.approx(expected_share)
 
 
 def test_without_a_final_trajectory_a_crash_is_judged_by_the_emitted_poses(make_record):
     record = make_record("000x1111xx", final="..........", outcome="crashed")
     assert evaluated_map(record) == 1
-    assert completion(record) == pytest.approx(0.4)
+    assert share(evaluated_frames(record)) == pytest.approx(0.4)
     T, maps = estimate_by_frame(record)
     assert maps.tolist() == [0, 0, 0, -1, 1, 1, 1, 1, -1, -1]
     assert np.isfinite(T[maps >= 0]).all()

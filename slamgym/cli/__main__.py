@@ -1,0 +1,5 @@
+"""`python -m slamgym.cli` is `slamgym`."""
+
+from slamgym.cli import main
+
+main()

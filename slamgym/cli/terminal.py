@@ -1,0 +1,49 @@
+"""What every command says on the terminal, and how."""
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from slamgym.errors import TrajectoryWarning
+
+results = Console()
+notes = Console(stderr=True)
+
+
+def say(console: Console, text: str, style: str | None = None) -> None:
+    """Print as it is: a path may hold what would be markup."""
+    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+
+@contextmanager
+def told_warnings(about: Path | None = None) -> Iterator[None]:
+    """Say warnings about trajectories in one line each; others stay as they are."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", TrajectoryWarning)
+        show = warnings.showwarning
+
+        def say_or_show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+            if issubclass(category, TrajectoryWarning):
+                say(notes, f"slamgym: warning: {f'{about}: ' if about else ''}{message}", style="yellow")
+            else:
+                show(message, category, *where, **more)
+
+        warnings.showwarning = say_or_show
+        yield
+
+
+def metres_progress() -> Progress:
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.1f} m"),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        console=notes,
+        transient=True,
+    )
