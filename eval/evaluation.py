@@ -18,7 +18,7 @@ from slamgym.eval.summary import (
     motion_summary,
     tracking_summary,
 )
-from slamgym.eval.trajectories import Trajectory, associate, match_stamps
+from slamgym.eval.trajectories import Trajectory, associate, fill_holes, match_stamps
 from slamgym.types import BoolArray, IntArray, LossEvent, Summary
 
 
@@ -41,9 +41,14 @@ class EvalParams(Params):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evaluation:
-    """What came out: the poses at all frames, which of these count as tracked, bool (N,), the losses, the summary."""
+    """What came out, at N frames.
+
+    frames: their poses. real: int64 (M,), which of them the truth has a pose for; the others fill holes of it.
+    tracked: bool (N,), which count as tracked. losses; summary: see `evaluate`.
+    """
 
     frames: FramePoses
+    real: IntArray
     tracked: BoolArray
     losses: list[LossEvent]
     summary: Summary
@@ -72,43 +77,46 @@ def evaluate(
     when frames have none, and of long holes in the truth.
     """
     params = params or EvalParams()
-    if frames_ns is None:
-        _warn_of_holes(ref, params.max_gap_s)
     truth = ref if frames_ns is None else _at_frames(ref, frames_ns, params)
     rows, pairs, scale = _aligned_pairs(truth, est, params)
-    frames = _by_frame(truth, rows, pairs)
+    whole = truth if frames_ns is not None else _without_holes(truth, params.max_gap_s)
+    real = np.searchsorted(whole.stamps_ns, truth.stamps_ns)
+    frames = _by_frame(whole, real[rows], pairs)
     tracked = frames.tracked
     if frames_ns is None:
-        tracked = tracked | covered_frames(truth.stamps_ns, est.stamps_ns, params.max_gap_s)
-    losses = find_gaps(truth.stamps_ns, truth.T, tracked)
+        tracked = tracked | covered_frames(whole.stamps_ns, est.stamps_ns, params.max_gap_s)
+    losses = find_gaps(whole.stamps_ns, whole.T, tracked)
     summary = {
         **_outcome(tracked, losses),
         **accuracy_summary(pairs if frames_ns is None else frames),
         "scale": scale,
-        **tracking_summary(truth.stamps_ns, truth.T, tracked, losses),
+        **tracking_summary(whole.stamps_ns, whole.T, tracked, losses),
         **correctness_summary(frames, len(est)),
         "time_to_initialize_s": _time_to_first(frames),
-        "frames": len(truth),
+        "frames": len(whole),
         "poses": len(est),
         "matched": len(rows),
-        **motion_summary(truth.stamps_ns, truth.T),
+        **motion_summary(whole.stamps_ns, whole.T),
     }
     if frames_ns is None:
         # The truth has more poses than the camera took frames: its recall says nothing.
         summary["f1_area"] = np.nan
-    return Evaluation(frames, tracked, losses, summary)
+    return Evaluation(frames, real, tracked, losses, summary)
 
 
-def _warn_of_holes(ref: Trajectory, max_gap_s: float) -> None:
-    holes_s = np.diff(ref.stamps_ns) * 1e-9
-    holes_s = holes_s[holes_s > max_gap_s]
-    if len(holes_s):
+def _without_holes(ref: Trajectory, max_gap_s: float) -> Trajectory:
+    """The truth with its holes filled, so that getting lost in one counts, with a warning."""
+    filled = fill_holes(ref, max_gap_s)
+    if len(filled) > len(ref):
+        holes_s = np.diff(ref.stamps_ns) * 1e-9
         warnings.warn(
-            f"the truth has {len(holes_s)} holes of more than {max_gap_s:g} s, {holes_s.sum():.1f} s in all: poses in "
-            "them cannot be judged, and no loss is seen in them",
+            f"the truth has {np.sum(holes_s > max_gap_s)} holes of more than {max_gap_s:g} s, "
+            f"{holes_s[holes_s > max_gap_s].sum():.1f} s in all: estimated poses in them cannot be judged, and do not "
+            "count as correct",
             TrajectoryWarning,
             stacklevel=3,
         )
+    return filled
 
 
 def _at_frames(ref: Trajectory, frames_ns: IntArray, params: EvalParams) -> Trajectory:

@@ -20,16 +20,19 @@ def evaluation_plots(evaluations: Mapping[str, Evaluation]) -> dict[str, Figure]
     "top": from above; "time": over time; "errors": share of the frames within an error; "ate": ATE of each
     that got through without a loss.
     """
-    shown = {name: carried_poses(evaluation) for name, evaluation in evaluations.items()}
-    frames = next(iter(evaluations.values())).frames
-    time_s = (frames.stamps_ns - frames.stamps_ns[0]) * 1e-9
+    first = next(iter(evaluations.values()))
+    stamps_ns, true_T = first.frames.stamps_ns[first.real], first.frames.ref_T[first.real]
+    shown = {name: carried_poses(evaluation)[first.real] for name, evaluation in evaluations.items()}
     losses = {name: evaluation.losses for name, evaluation in evaluations.items()}
-    errors = {name: _errors_m(frames.ref_T, est_T) for name, est_T in shown.items()}
     ate = [e.summary["ate_rmse_m"] if e.summary["success"] else np.nan for e in evaluations.values()]
     return {
-        "top": plot_trajectory_top(frames.ref_T[:, :3, 3], {name: T[:, :3, 3] for name, T in shown.items()}),
-        "time": plot_trajectory_time(time_s, frames.ref_T, shown, losses),
-        "errors": plot_cumulative(errors, quantity="position error (m)", counted="frames"),
+        "top": plot_trajectory_top(true_T[:, :3, 3], {name: T[:, :3, 3] for name, T in shown.items()}),
+        "time": plot_trajectory_time((stamps_ns - stamps_ns[0]) * 1e-9, true_T, shown, losses),
+        "errors": plot_cumulative(
+            {name: _errors_m(evaluation) for name, evaluation in evaluations.items()},
+            quantity="position error (m)",
+            counted="frames",
+        ),
         "ate": plot_sorted_bars({"estimates": ate}, names=list(evaluations)),
     }
 
@@ -47,6 +50,11 @@ def carried_poses(evaluation: Evaluation) -> FloatArray:
     return np.where(evaluation.tracked[:, None, None], carried, np.nan)
 
 
-def _errors_m(ref_T: FloatArray, est_T: FloatArray) -> FloatArray:
-    """Position errors (N,), metres, NaN where there is no pose."""
+def _errors_m(evaluation: Evaluation) -> FloatArray:
+    """Position errors of frames, metres, NaN where not tracked; without those that lie in a hole of the truth and were
+    tracked: they cannot be judged.
+    """
+    judged = ~evaluation.tracked
+    judged[evaluation.real] = True
+    ref_T, est_T = evaluation.frames.ref_T[judged], carried_poses(evaluation)[judged]
     return np.asarray(np.linalg.norm(ref_T[:, :3, 3] - est_T[:, :3, 3], axis=1))

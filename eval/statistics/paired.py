@@ -58,7 +58,7 @@ def compare_pairs(
 
     The intervals: `median_interval` of the differences (from 6 paths on); the mean of log(a / b) by bootstrap-t, see
     `bootstrap_interval` (NaN where a value is 0); Bonett and Price, "Adjusted Wald confidence interval for a difference
-    of binomial proportions based on paired data", 2012. With 30 paths each holds 93 to 97 % at 95 %.
+    of binomial proportions based on paired data", 2012. With 30 paths each holds 94 to 98 % at 95 %.
     Raises ConfigError.
     """
     check_confidence(confidence)

@@ -3,6 +3,7 @@
 from slamgym.eval.trajectories.association import associate, match_stamps
 from slamgym.eval.trajectories.attributes import SequenceAttributes, sequence_attributes, step_sizes
 from slamgym.eval.trajectories.files import FORMATS, guess_format, read_trajectory
+from slamgym.eval.trajectories.holes import fill_holes
 from slamgym.eval.trajectories.stamps import read_stamps
 from slamgym.eval.trajectories.trajectory import Trajectory
 from slamgym.eval.trajectories.tum import read_tum, write_tum
@@ -12,6 +13,7 @@ __all__ = [
     "SequenceAttributes",
     "Trajectory",
     "associate",
+    "fill_holes",
     "guess_format",
     "match_stamps",
     "read_stamps",

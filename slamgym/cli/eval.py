@@ -17,6 +17,7 @@ from slamgym.eval.plots import evaluation_plots, save_figure
 from slamgym.eval.plots.names import shorten
 from slamgym.eval.summary import CORRECT_ROT_DEG, CORRECT_TRANS_M, without_nan
 from slamgym.eval.trajectories import Trajectory, read_stamps, read_trajectory
+from slamgym.eval.trajectories.text import first_data_line, format_of
 from slamgym.report_table import PERCENT, figures_table
 from slamgym.types import IntArray
 
@@ -30,7 +31,6 @@ COLUMNS: dict[str, tuple[str, str]] = {
     "ATE\nm": ("ate_rmse_m", "{:.4f}"),
     "ATE\n°": ("ate_rot_rmse_deg", "{:.2f}"),
     "RPE\n1 s m": ("rpe_second_trans_rmse_m", "{:.4f}"),
-    "drift\n%": ("drift_trans_percent", "{:.2f}"),
 }
 """Heading -> key of the row, and its format. ATE never stands without completion."""
 
@@ -65,6 +65,8 @@ def evaluate_files(options: Eval) -> None:
     """`slamgym eval`."""
     params = EvalParams.checked(vars(options.params))
     _check(options)
+    if options.times and not any(_has_no_stamps(path) for path in (options.groundtruth, *options.estimates)):
+        raise ConfigError("expected --times only with KITTI files, got files that have stamps: leave it out")
     with notes.status("reading the files"), told_warnings():
         truth = _read(options, options.groundtruth)
         frames_ns = None if options.frames is None else read_stamps(options.frames)
@@ -98,7 +100,13 @@ def _check(options: Eval) -> None:
 
 def _read(options: Eval, path: Path, *, allow_empty: bool = False) -> Trajectory:
     # A SLAM that never initialised writes a file without a pose: for an estimate that is a result.
-    return read_trajectory(path, times=options.times, repair=not options.strict, allow_empty=allow_empty)
+    times = options.times if _has_no_stamps(path) else None
+    return read_trajectory(path, times=times, repair=not options.strict, allow_empty=allow_empty)
+
+
+def _has_no_stamps(path: Path) -> bool:
+    line = first_data_line(path)
+    return line is not None and format_of(line) == "kitti"
 
 
 def _evaluate(
@@ -137,7 +145,7 @@ def _caption(options: Eval, row: Mapping[str, Any]) -> str:
     return (
         f"complete: {complete}. correct: share of the time within {CORRECT_TRANS_M:g} m and {CORRECT_ROT_DEG:g}°.\n"
         f"ATE: RMSE over the poses after {row['alignment']} alignment; association as {row['association']} does it, "
-        f"within {row['max_difference_s']:g} s. drift: over 1 to 8 m."
+        f"within {row['max_difference_s']:g} s."
     )
 
 

@@ -142,7 +142,7 @@ def test_intervals_in_words(interval, text):
         (lambda: median_interval([[1.0, 2.0]]), r"got shape \(1, 2\)"),
         (lambda: median_interval([1.0, np.nan]), "count failures as infinity"),
         (lambda: bootstrap_interval([1.0, INF], "mean"), "expected finite values"),
-        (lambda: bootstrap_interval([1.0, 2.0], "meen"), "did you mean 'mean'"),
+        (lambda: bootstrap_interval([1.0, 2.0], "meen"), "did you mean 'mean'"),  # type: ignore[arg-type]
         (lambda: median_interval([1.0], confidence=95), "such as 0.95, got 95"),
         (lambda: proportion_interval(3, 2), "got 3 successes of 2"),
     ],
