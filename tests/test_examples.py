@@ -12,15 +12,28 @@ ARGUMENTS = {
     "views.py": [*SHORT, "--out", "OUT.png"],
     "speed_sweep.py": [*SHORT, "--speeds", "0.5", "1.0", "--out", "OUT"],
 }
+"""Of every example; analyse_runs.py is run on what speed_sweep.py leaves."""
 
 
-@pytest.mark.parametrize("script", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.name)
-def test_example_runs(script, tmp_path):
-    arguments = [word.replace("OUT", str(tmp_path / "out")) for word in ARGUMENTS[script.name]]
+def run(script, arguments, folder):
+    words = [word.replace("OUT", str(folder / "out")) for word in arguments]
     result = subprocess.run(
-        [sys.executable, str(script), *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=300
+        [sys.executable, str(EXAMPLES / script), *words], cwd=folder, capture_output=True, text=True, timeout=300
     )
     assert result.returncode == 0, result.stderr
-    assert "ok" in result.stdout
-    if script.name == "speed_sweep.py":
+    return result.stdout
+
+
+def test_every_example_is_run():
+    assert {path.name for path in EXAMPLES.glob("*.py")} == {*ARGUMENTS, "analyse_runs.py"}
+
+
+@pytest.mark.parametrize("script", ARGUMENTS)
+def test_example_runs(script, tmp_path):
+    assert "ok" in run(script, ARGUMENTS[script], tmp_path)
+    if script == "speed_sweep.py":
         assert len(list((tmp_path / "out").glob("*/speed_*/episode.json"))) == 2
+        printed = run("analyse_runs.py", ["OUT", "--pictures", "OUT/pictures"], tmp_path)
+        assert "2 runs: 2 ok" in printed
+        assert "0 of 2 runs failed" in printed
+        assert len(list((tmp_path / "out" / "pictures").iterdir())) == 4
