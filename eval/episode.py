@@ -2,16 +2,15 @@
 
 import numpy as np
 
-from slamgym.eval.accuracy import ate
+from slamgym.eval.accuracy import ate, is_determined
 from slamgym.eval.robustness import (
     estimate_by_frame,
     final_by_frame,
     find_losses,
     held_ate,
+    is_success,
     most_frequent_map,
-    seconds_between,
     status,
-    success,
     tracked_frames,
 )
 from slamgym.eval.summary import (
@@ -22,13 +21,13 @@ from slamgym.eval.summary import (
     motion_summary,
     tracking_summary,
 )
-from slamgym.types import FloatArray, IntArray, SlamEvent, SlamRecord, Summary
+from slamgym.types import BoolArray, FloatArray, IntArray, SlamEvent, SlamRecord, Summary
 
 
 def summarize_slam(record: SlamRecord) -> Summary:
     """Accuracy and robustness of one SLAM run, in JSON types; what cannot be told is NaN.
 
-    - `status`: "ok", "lost", "init_failed", "crashed" or "timeout"; `success`: "ok" and no loss.
+    - `status`: "ok", "lost", "init_failed", "crashed" or "timeout"; `success`: see `is_success`.
     - all of `accuracy_summary`: of the final trajectory in the evaluated map, after rigid alignment; NaN for a SLAM
       that crashed or hung before it gave one. `ate_online_rmse_m`: ATE of the poses as they were emitted, of one online
       map where several were merged later. ATE is NaN below 3 poses.
@@ -41,15 +40,19 @@ def summarize_slam(record: SlamRecord) -> Summary:
     - `lockstep_overruns`: frames for which lock-step gave up waiting; above 0 the result depends on the computer.
     - all of `motion_summary`, of the fed frames.
     """
-    final, estimate = (_frames(record, *by_frame(record)) for by_frame in (final_by_frame, estimate_by_frame))
+    final = _frames(record, *final_by_frame(record))
+    estimate = _frames(record, *estimate_by_frame(record))
+    losses = find_losses(record)
+    tracking = tracking_summary(record.stamps_ns, record.T_world_cam, estimate.judged, losses)
+    ok = tracked_frames(record)
     return {
         "status": status(record),
-        "success": success(record),
+        "success": is_success(status(record), len(losses), tracking["completion"]),
         **accuracy_summary(align_frames(final, "se3")[0]),
         "ate_online_rmse_m": _online_ate(record),
-        "ate_held_rmse_m": held_ate(*estimate[1:4]).rmse,
-        **tracking_summary(record.stamps_ns, record.T_world_cam, estimate.tracked, find_losses(record)),
-        **correctness_summary(align_frames(estimate, "se3")[0], int(tracked_frames(record).sum())),
+        "ate_held_rmse_m": held_ate(record.T_world_cam, estimate.est_T, estimate.judged).rmse,
+        **tracking,
+        **correctness_summary(align_frames(estimate, "se3")[0], int(ok.sum()), len(ok), frames_known=True),
         **_counts(record),
         "lockstep_overruns": record.lockstep_overruns,
         **motion_summary(record.stamps_ns, record.T_world_cam),
@@ -57,10 +60,9 @@ def summarize_slam(record: SlamRecord) -> Summary:
 
 
 def _frames(record: SlamRecord, T_map_cam: FloatArray, map_id: IntArray) -> FramePoses:
-    """The fed frames, tracked where they are in the largest map."""
-    return FramePoses(
-        record.stamps_ns, record.T_world_cam, T_map_cam, (map_id == most_frequent_map(map_id)) & (map_id >= 0)
-    )
+    """The fed frames, of which those in the largest map can be judged."""
+    judged = (map_id == most_frequent_map(map_id)) & (map_id >= 0)
+    return FramePoses(record.stamps_ns, record.T_world_cam, T_map_cam, judged)
 
 
 def _online_ate(record: SlamRecord) -> float:
@@ -72,7 +74,7 @@ def _online_ate(record: SlamRecord) -> float:
 
 
 def _ate_rmse(ref_T: FloatArray, est_T: FloatArray) -> float:
-    return ate(ref_T, est_T).trans_m.rmse if len(ref_T) >= 3 else np.nan
+    return ate(ref_T, est_T).trans_m.rmse if is_determined(ref_T, est_T, "se3") else np.nan
 
 
 def _counts(record: SlamRecord) -> Summary:
@@ -83,5 +85,11 @@ def _counts(record: SlamRecord) -> Summary:
         "tracked_points_median": float(np.median(record.tracked_points[ok])) if ok.any() else np.nan,
         "maps": len(np.unique(record.map_id[ok])),
         "loops_closed": record.events.count(SlamEvent.LOOP_CLOSED),
-        "time_to_initialize_s": seconds_between(record, 0, int(np.argmax(ok))) if ok.any() else np.nan,
+        "time_to_initialize_s": float(record.stamps_ns[np.argmax(ok)] - record.stamps_ns[0]) * 1e-9
+        if ok.any()
+        else np.nan,
     }
+
+
+def _time_to_first(stamps_ns: IntArray, ok: BoolArray) -> float:
+    return float(stamps_ns[np.argmax(ok)] - stamps_ns[0]) * 1e-9 if ok.any() else np.nan

@@ -2,15 +2,17 @@
 
 import warnings
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
 from slamgym.checked_params import Params
-from slamgym.errors import TrajectoryError, TrajectoryWarning
-from slamgym.eval.robustness import covered_frames, find_gaps
+from slamgym.errors import ConfigError, TrajectoryError, TrajectoryWarning
+from slamgym.eval import doubts
+from slamgym.eval.robustness import covered_frames, find_gaps, held_ate, is_success
 from slamgym.eval.summary import (
+    MOTION_RATES,
     FramePoses,
     accuracy_summary,
     align_frames,
@@ -18,8 +20,21 @@ from slamgym.eval.summary import (
     motion_summary,
     tracking_summary,
 )
-from slamgym.eval.trajectories import Trajectory, associate, fill_holes, match_stamps
+from slamgym.eval.trajectories import (
+    Trajectory,
+    associate,
+    fill_holes,
+    find_holes,
+    interpolate,
+    match_stamps,
+    step_sizes,
+)
 from slamgym.types import BoolArray, IntArray, LossEvent, Summary
+
+MAX_GAP_S = 1.0
+USUAL_STEPS = 5
+"""Where the frames are not known, gaps of up to so many usual steps of the estimate count as tracked, but none of more
+than MAX_GAP_S."""
 
 
 class EvalParams(Params):
@@ -29,9 +44,13 @@ class EvalParams(Params):
         "se3", description="of the estimate to the truth; sim3 also corrects the scale, which hides an error of RGB-D"
     )
     association: Literal["tum", "evo"] = Field("tum", description="by whose rule poses belong together")
-    max_difference_s: float = Field(0.02, ge=0, le=3600, description="longest time between two such poses, s")
-    max_gap_s: float = Field(
-        1.0, ge=0, le=3600, description="longest time without a pose that counts as tracked, s; 0 when frames are given"
+    max_difference_s: float = Field(0.02, gt=0, le=3600, description="longest time between two such poses, s")
+    max_gap_s: float | None = Field(
+        None,
+        ge=0,
+        le=3600,
+        description=f"longest time without a pose that counts as tracked, s; None: {USUAL_STEPS} usual steps of the "
+        f"estimate, 0.1 to {MAX_GAP_S:g} s; not with frames, which tell",
     )
 
     @property
@@ -40,15 +59,29 @@ class EvalParams(Params):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Reference:
+    """A sequence to judge estimates of, made by `prepare`.
+
+    truth: the true poses. whole: true poses at the N frames, interpolated where the truth has none. real: bool (N,),
+    where it has one. frames_known: whether the frames were given.
+    """
+
+    truth: Trajectory
+    whole: Trajectory
+    real: BoolArray
+    frames_known: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Evaluation:
     """What came out, at N frames.
 
-    frames: their poses. real: int64 (M,), which of them the truth has a pose for; the others fill holes of it.
-    tracked: bool (N,), which count as tracked. losses; summary: see `evaluate`.
+    frames: their poses; real: bool (N,), where the truth has a pose; tracked: bool (N,), which frames count as tracked;
+    losses; summary: see `evaluate`.
     """
 
     frames: FramePoses
-    real: IntArray
+    real: BoolArray
     tracked: BoolArray
     losses: list[LossEvent]
     summary: Summary
@@ -61,104 +94,180 @@ def evaluate(
 
     frames_ns: int64 (N,), increasing, the stamps of the frames that the SLAM was given. With them a frame is tracked
     when the estimate has a pose for it, and every run of frames without one, after the first pose, is a loss. Without
-    them the poses of the truth stand for the frames, of which a camera takes fewer: so times without a pose up to
-    `max_gap_s` count as tracked, and only longer ones are losses.
+    them the poses of the truth, its holes filled, stand for the frames, of which a camera takes fewer: so times without
+    a pose up to `max_gap_s` count as tracked, and only longer ones are losses. Errors are in any case those of an
+    estimated pose against the true one that belongs to its own stamp; a frame without a true one, as in a hole of the
+    truth, is still tracked or lost.
 
     The summary holds, in JSON types, NaN for what cannot be told:
 
-    - `status`: "ok" (tracked at the end), "lost", "init_failed" (no pose); `success`: "ok" and no loss.
-    - all of `accuracy_summary`, over the associated poses one after another, with `frames_ns` over the frames; `scale`
-      that "sim3" corrected, else 1. NaN where the alignment needs more poses than there are.
-    - all of `tracking_summary`, `correctness_summary` (`f1_area` only with `frames_ns`) and `motion_summary`;
-      `time_to_initialize_s`.
-    - `frames`; `poses` of the estimate; `matched`: those with a true pose.
+    - `status`: "ok" (tracked at the end), "lost", "init_failed" (no pose); `success`: see `is_success`.
+    - all of `accuracy_summary`: with frames over these, without over the associated poses one after another; `scale`
+      that "sim3" corrected, else 1. Absolute errors are NaN where the poses leave the alignment open.
+    - all of `tracking_summary` and `correctness_summary`; `time_to_initialize_s`.
+    - `frames`: how many there are, or true poses that stand for them; `frames_without_truth`: those of them in holes or
+      beyond the ends of the truth; `poses` of the estimate; `matched`: those with a true pose; `max_gap_s`, as it was
+      taken; `duration_s`, `distance_m` of the truth.
+    - only with frames, else NaN: `f1_area`; `ate_held_rmse_m`: ATE over all frames when the last pose is held where
+      there is none (`held_ate`); all of `motion_summary`.
 
-    Raises TrajectoryError when no pose of the estimate has a true one; warns (TrajectoryWarning) when many have none,
-    when frames have none, and of long holes in the truth.
+    Raises TrajectoryError when no pose of the estimate, or no frame, has a true pose, ConfigError for `max_gap_s` with
+    frames. Warns (TrajectoryWarning) of what makes figures mean something else than they seem to, such as holes in the
+    truth, poses without a true one, stamps that are not those of the frames, orientations of another body.
     """
     params = params or EvalParams()
-    truth = ref if frames_ns is None else _at_frames(ref, frames_ns, params)
-    rows, pairs, scale = _aligned_pairs(truth, est, params)
-    whole = truth if frames_ns is not None else _without_holes(truth, params.max_gap_s)
-    real = np.searchsorted(whole.stamps_ns, truth.stamps_ns)
-    frames = _by_frame(whole, real[rows], pairs)
-    tracked = frames.tracked
+    return evaluate_at(prepare(ref, params, frames_ns), est, params)
+
+
+def prepare(ref: Trajectory, params: EvalParams, frames_ns: IntArray | None = None) -> Reference:
+    """The truth for `evaluate_at`; arguments, errors and warnings as for `evaluate`."""
+    if not len(ref):
+        raise TrajectoryError("expected a truth with poses, got none")
     if frames_ns is None:
-        tracked = tracked | covered_frames(whole.stamps_ns, est.stamps_ns, params.max_gap_s)
-    losses = find_gaps(whole.stamps_ns, whole.T, tracked)
-    summary = {
-        **_outcome(tracked, losses),
-        **accuracy_summary(pairs if frames_ns is None else frames),
-        "scale": scale,
-        **tracking_summary(whole.stamps_ns, whole.T, tracked, losses),
-        **correctness_summary(frames, len(est)),
-        "time_to_initialize_s": _time_to_first(frames),
-        "frames": len(whole),
-        "poses": len(est),
-        "matched": len(rows),
-        **motion_summary(whole.stamps_ns, whole.T),
-    }
-    if frames_ns is None:
-        # The truth has more poses than the camera took frames: its recall says nothing.
-        summary["f1_area"] = np.nan
-    return Evaluation(frames, real, tracked, losses, summary)
+        whole = fill_holes(ref, MAX_GAP_S)
+        reference = Reference(ref, whole, np.isin(whole.stamps_ns, ref.stamps_ns), False)
+    elif params.max_gap_s is None:
+        reference = _at_frames(ref, frames_ns, params)
+    else:
+        raise ConfigError(f"expected no max_gap_s with frames, which tell every gap; got {params.max_gap_s:g} s")
+    _warn(doubts.of_holes(ref, find_holes(ref, MAX_GAP_S), int((~reference.real).sum()), len(reference.whole)))
+    return reference
 
 
-def _without_holes(ref: Trajectory, max_gap_s: float) -> Trajectory:
-    """The truth with its holes filled, so that getting lost in one counts, with a warning."""
-    filled = fill_holes(ref, max_gap_s)
-    if len(filled) > len(ref):
-        holes_s = np.diff(ref.stamps_ns) * 1e-9
-        warnings.warn(
-            f"the truth has {np.sum(holes_s > max_gap_s)} holes of more than {max_gap_s:g} s, "
-            f"{holes_s[holes_s > max_gap_s].sum():.1f} s in all: estimated poses in them cannot be judged, and do not "
-            "count as correct",
-            TrajectoryWarning,
-            stacklevel=3,
-        )
-    return filled
-
-
-def _at_frames(ref: Trajectory, frames_ns: IntArray, params: EvalParams) -> Trajectory:
-    """The truth at the frames; those without a true pose are left out, with a warning."""
-    rows, kept = match_stamps(ref.stamps_ns, frames_ns, params.max_difference_ns)
-    if not len(kept):
+def _at_frames(ref: Trajectory, frames_ns: IntArray, params: EvalParams) -> Reference:
+    whole = Trajectory(frames_ns, interpolate(ref, frames_ns))
+    real = np.zeros(len(whole), dtype=np.bool_)
+    real[match_stamps(ref.stamps_ns, frames_ns, params.max_difference_ns)[1]] = True
+    if not real.any():
         raise TrajectoryError(
             f"expected frames with a true pose within {params.max_difference_s:g} s, got {len(frames_ns)} without: "
             "are frames and truth of the same sequence?"
         )
-    if without := len(frames_ns) - len(kept):
-        warnings.warn(
-            f"{without} of {len(frames_ns)} frames have no true pose within {params.max_difference_s:g} s and are left "
-            "out: what the SLAM did there cannot be judged",
-            TrajectoryWarning,
-            stacklevel=3,
-        )
-    return Trajectory(frames_ns[kept], ref.T[rows])
+    return Reference(ref, whole, real, True)
 
 
-def _aligned_pairs(truth: Trajectory, est: Trajectory, params: EvalParams) -> tuple[IntArray, FramePoses, float]:
-    """Rows of the truth that have an estimated pose, these poses as pairs, and the scale of the alignment."""
+def evaluate_at(reference: Reference, est: Trajectory, params: EvalParams) -> Evaluation:
+    """`evaluate` against a sequence that `prepare` made ready with the same parameters."""
+    whole = reference.whole
+    _warn(doubts.of_the_order(reference.truth, est) + doubts.of_repeated_poses(est))
+    pairs = _pairs(reference.truth, est, params)
+    compare = _at_given_frames if reference.frames_known else _at_true_poses
+    compared = compare(reference, pairs, est, params)
+    frames, judged, tracked = compared.frames, compared.judged, compared.tracked
+    if judged.aligned:
+        _warn(doubts.of_orientations(judged.ref_T[judged.judged], judged.turned_T[judged.judged]))
+    real = reference.real | frames.judged
+    losses = find_gaps(whole.stamps_ns, whole.T, tracked)
+    n = int(judged.judged.sum())
+    summary = {
+        **_outcome(tracked, losses),
+        **accuracy_summary(judged),
+        "scale": compared.scale,
+        **tracking_summary(whole.stamps_ns, whole.T, tracked, losses),
+        **correctness_summary(frames, n, int(real.sum()), frames_known=reference.frames_known),
+        "ate_held_rmse_m": held_ate(frames.ref_T[real], frames.est_T[real], frames.judged[real]).rmse,
+        "time_to_initialize_s": _time_to_first(whole.stamps_ns, est.stamps_ns),
+        "frames": len(whole) if reference.frames_known else len(reference.truth),
+        "frames_without_truth": int((~real).sum()),
+        "poses": len(est),
+        "matched": n,
+        "max_gap_s": compared.max_gap_s,
+        "duration_s": float(whole.stamps_ns[-1] - whole.stamps_ns[0]) * 1e-9,
+        "distance_m": float(step_sizes(whole.T)[0].sum()),
+        **motion_summary(whole.stamps_ns, whole.T),
+    }
+    if not reference.frames_known:
+        # These need to know what a frame is: the truth has more poses than the camera took.
+        summary.update(dict.fromkeys(("f1_area", "ate_held_rmse_m", *MOTION_RATES), np.nan))
+    return Evaluation(frames, real, tracked, losses, summary)
+
+
+class _Pairs(NamedTuple):
+    """Poses of truth and estimate that belong together, and their rows in both."""
+
+    rows: IntArray
+    est_rows: IntArray
+    poses: FramePoses
+
+
+class _Compared(NamedTuple):
+    """Aligned poses at all frames; those that errors are taken over; which frames are tracked, with what gaps."""
+
+    frames: FramePoses
+    judged: FramePoses
+    scale: float
+    tracked: BoolArray
+    max_gap_s: float
+
+
+def _pairs(truth: Trajectory, est: Trajectory, params: EvalParams) -> _Pairs:
     rows = est_rows = np.empty(0, dtype=np.int64)
     if len(est):
         rows, est_rows = associate(truth, est, params.max_difference_ns, params.association)
-    # In every convention each pose of the shorter trajectory comes up at most once.
-    stamps_ns = est.stamps_ns[est_rows] if len(est) <= len(truth) else truth.stamps_ns[rows]
-    pairs = FramePoses(stamps_ns, truth.T[rows], est.T[est_rows], np.ones(len(rows), dtype=np.bool_))
-    return rows, *align_frames(pairs, params.alignment)
+    # Each pose of the shorter trajectory comes up at most once, but only those of the truth are in order: the partners
+    # of two that lie close together may be crossed.
+    in_order = len(np.unique(rows)) == len(rows)
+    stamps_ns = truth.stamps_ns[rows] if in_order else est.stamps_ns[est_rows]
+    poses = FramePoses(stamps_ns, truth.T[rows], est.T[est_rows], np.ones(len(rows), dtype=np.bool_))
+    return _Pairs(rows, est_rows, poses)
 
 
-def _by_frame(truth: Trajectory, rows: IntArray, pairs: FramePoses) -> FramePoses:
-    est_T, tracked = np.full_like(truth.T, np.nan), np.zeros(len(truth), dtype=np.bool_)
-    est_T[rows], tracked[rows] = pairs.est_T, True
-    return FramePoses(truth.stamps_ns, truth.T, est_T, tracked, pairs.aligned)
+def _at_given_frames(reference: Reference, pairs: _Pairs, est: Trajectory, params: EvalParams) -> _Compared:
+    """A frame is tracked when it has a pose, whether or not the truth has one too."""
+    whole = reference.whole
+    frame_rows, est_rows = match_stamps(whole.stamps_ns, est.stamps_ns, _frame_bound_ns(whole, params))
+    _warn(doubts.of_stamps(whole.stamps_ns[frame_rows], est.stamps_ns[est_rows]))
+    tracked = np.zeros(len(whole), dtype=np.bool_)
+    tracked[frame_rows] = True
+    pair_of = np.full(len(est), -1)
+    pair_of[pairs.est_rows] = np.arange(len(pairs.est_rows))
+    with_truth = pair_of[est_rows] >= 0
+    placed = _placed(whole, frame_rows[with_truth], pairs.poses, pair_of[est_rows[with_truth]])
+    frames, scale = align_frames(placed, params.alignment)
+    return _Compared(frames, frames, scale, tracked, 0.0)
+
+
+def _at_true_poses(reference: Reference, pairs: _Pairs, est: Trajectory, params: EvalParams) -> _Compared:
+    """A pose of the truth is tracked when it lies in a short gap of the estimate."""
+    whole, truth = reference.whole, reference.truth
+    judged, scale = align_frames(pairs.poses, params.alignment)
+    rows = np.searchsorted(whole.stamps_ns, truth.stamps_ns)[pairs.rows]
+    frames = _placed(whole, rows, judged, np.arange(len(rows)))
+    max_gap_s = _max_gap_s(truth, est, params)
+    _warn(doubts.of_the_ends(truth, est, max_gap_s))
+    tracked = frames.judged | covered_frames(whole.stamps_ns, est.stamps_ns, max_gap_s)
+    return _Compared(frames, judged, scale, tracked, max_gap_s)
+
+
+def _placed(whole: Trajectory, rows: IntArray, pairs: FramePoses, chosen: IntArray) -> FramePoses:
+    """The chosen pairs in their rows of all frames."""
+    ref_T, est_T, judged = whole.T.copy(), np.full_like(whole.T, np.nan), np.zeros(len(whole), dtype=np.bool_)
+    ref_T[rows], est_T[rows], judged[rows] = pairs.ref_T[chosen], pairs.est_T[chosen], True
+    return pairs._replace(stamps_ns=whole.stamps_ns, ref_T=ref_T, est_T=est_T, judged=judged)
+
+
+def _frame_bound_ns(whole: Trajectory, params: EvalParams) -> int:
+    """Half of the usual time between frames at most, so that a lost frame does not get its neighbour's pose."""
+    steps_ns = np.diff(whole.stamps_ns)
+    return min(params.max_difference_ns, int(np.median(steps_ns)) // 2) if len(steps_ns) else params.max_difference_ns
+
+
+def _max_gap_s(truth: Trajectory, est: Trajectory, params: EvalParams) -> float:
+    """What was asked for, or what the estimate's own rate tells, up to MAX_GAP_S; not below the truth's rate."""
+    est_s, true_s = (float(np.median(np.diff(t.stamps_ns))) * 1e-9 if len(t) > 1 else 0.0 for t in (est, truth))
+    wanted_s = min(MAX_GAP_S, max(0.1, USUAL_STEPS * est_s)) if params.max_gap_s is None else params.max_gap_s
+    return max(wanted_s, 2 * true_s)
+
+
+def _warn(sentences: list[str]) -> None:
+    for sentence in sentences:
+        warnings.warn(sentence, TrajectoryWarning, stacklevel=4)
 
 
 def _outcome(tracked: BoolArray, losses: list[LossEvent]) -> Summary:
     status = "init_failed" if not tracked.any() else "ok" if tracked[-1] else "lost"
-    return {"status": status, "success": status == "ok" and not losses}
+    return {"status": status, "success": is_success(status, len(losses), float(tracked.mean()))}
 
 
-def _time_to_first(frames: FramePoses) -> float:
-    first = int(np.argmax(frames.tracked))
-    return float(frames.stamps_ns[first] - frames.stamps_ns[0]) * 1e-9 if frames.tracked.any() else np.nan
+def _time_to_first(stamps_ns: IntArray, poses_ns: IntArray) -> float:
+    return max(float(poses_ns[0] - stamps_ns[0]) * 1e-9, 0.0) if len(poses_ns) else np.nan

@@ -6,7 +6,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from slamgym.eval.accuracy import PoseErrorStats, absolute_errors, align, rpe, rpe_all_steps, segment_drift
+from slamgym.eval.accuracy import (
+    PoseErrorStats,
+    absolute_errors,
+    align,
+    free_turn,
+    is_determined,
+    rpe,
+    rpe_all_steps,
+    segment_drift,
+)
 from slamgym.eval.robustness import (
     completion,
     correct_poses,
@@ -14,13 +23,9 @@ from slamgym.eval.robustness import (
     exposure,
     failure_rates,
     precision_recall_area,
-    relocalization_score,
 )
-from slamgym.eval.trajectories import sequence_attributes
+from slamgym.eval.trajectories import SequenceAttributes, sequence_attributes
 from slamgym.types import BoolArray, FloatArray, IntArray, LossEvent, Summary
-
-POSES_NEEDED = {"se3": 3, "sim3": 3, "first_pose": 1, "none": 0}
-"""With fewer poses the alignment is open, and there is no absolute error."""
 
 CORRECT_TRANS_M, CORRECT_ROT_DEG = 0.1, 10.0
 """Absolute errors up to which a pose counts as correct."""
@@ -28,56 +33,77 @@ CORRECT_TRANS_M, CORRECT_ROT_DEG = 0.1, 10.0
 F1_MAX_M = 0.5
 """Upper end of the thresholds of `f1_area`."""
 
+MOTION_RATES = tuple(name for name in SequenceAttributes._fields if "_per_" in name or name.endswith("_share"))
+
 ALL_STEPS_LIMIT = 10_000
 """Frames above which the RPE over all steps, quadratic in time, is left out (NaN): it would take minutes."""
 
 
 class FramePoses(NamedTuple):
     """Poses at N frames: stamps_ns int64 (N,), true ref_T (N, 4, 4), estimated est_T (N, 4, 4), of any value where the
-    frame is not `tracked`, bool (N,); aligned: whether ref_T and est_T share their frame.
+    frame is not `judged`, bool (N,): where there is an estimated and a true pose. aligned: whether they share their
+    frame; then R_free (3, 3) is the `free_turn` of the alignment.
     """
 
     stamps_ns: IntArray
     ref_T: FloatArray
     est_T: FloatArray
-    tracked: BoolArray
+    judged: BoolArray
     aligned: bool = False
+    R_free: FloatArray | None = None
+
+    @property
+    def turned_T(self) -> FloatArray:
+        """The estimated poses with orientations to compare with the true ones."""
+        turned = self.est_T.copy()
+        if self.R_free is not None:
+            turned[:, :3, :3] = self.R_free @ turned[:, :3, :3]
+        return turned
 
 
 def align_frames(poses: FramePoses, alignment: str) -> tuple[FramePoses, float]:
-    """The poses after `alignment` over the tracked frames, and its scale; as they are where it needs more of these."""
-    ref_T, est_T = poses.ref_T[poses.tracked], poses.est_T[poses.tracked]
-    if len(ref_T) < POSES_NEEDED[alignment]:
+    """The poses after `alignment` over the judged frames, and its scale; as they are where these leave it open."""
+    ref_T, est_T = poses.ref_T[poses.judged], poses.est_T[poses.judged]
+    if not is_determined(ref_T, est_T, alignment):
         return poses, 1.0
     similarity = align(ref_T, est_T, alignment)
     moved = np.full_like(poses.est_T, np.nan)
-    moved[poses.tracked] = similarity.apply(est_T)
-    return poses._replace(est_T=moved, aligned=True), similarity.scale
+    moved[poses.judged] = similarity.apply(est_T)
+    by_positions = alignment in ("se3", "sim3")
+    R_free = free_turn(ref_T, moved[poses.judged]) if by_positions else np.eye(3)
+    return poses._replace(est_T=moved, aligned=True, R_free=R_free), similarity.scale
+
+
+def _errors(poses: FramePoses) -> tuple[FloatArray, FloatArray]:
+    """Absolute errors, metres and degrees, of the judged frames; none unless they are aligned."""
+    judged = poses.judged & poses.aligned
+    return absolute_errors(poses.ref_T[judged], poses.turned_T[judged])
 
 
 def accuracy_summary(poses: FramePoses) -> Summary:
-    """Errors of the tracked frames; NaN where there are none, or no pair is far enough apart.
+    """Errors of the judged frames; NaN where there are none, or no pair is far enough apart.
 
     - `ate_rmse_m`, `ate_rot_rmse_deg`, and mean, median, std, min, max in place of rmse: absolute errors, NaN unless
-      the poses are aligned.
+      the poses are aligned. Orientations are compared after the `free_turn`.
     - `rpe_step_trans_rmse_m`, `rpe_step_rot_mean_deg`: relative errors over one frame; `rpe_second_*`: over 1 s;
       `rpe_metre_*`: over 1 m of the true path; `rpe_trans_rmse_m`, `rpe_rot_mean_deg`: over all steps, NaN above
       10,000 frames.
-    - `drift_trans_percent`, `drift_rot_deg_per_m`: over segments of 1 to 8 m (`segment_drift`).
+    - `drift_trans_percent`, `drift_rot_deg_per_m`: over segments of 1 to 8 m; `drift_segments`: how many these are
+      (`segment_drift`).
     """
-    stamps_ns, ref_T, est_T, tracked, aligned = poses
-    judged = tracked & aligned
-    ate = PoseErrorStats.of(*absolute_errors(ref_T[judged], est_T[judged]))
-    drift = segment_drift(ref_T, est_T, tracked=tracked)
+    stamps_ns, ref_T, est_T, judged = poses[:4]
+    ate = PoseErrorStats.of(*_errors(poses))
+    drift = segment_drift(ref_T, est_T, tracked=judged)
     return {
         **{f"ate_{name}_m": value for name, value in asdict(ate.trans_m).items()},
         **{f"ate_rot_{name}_deg": value for name, value in asdict(ate.rot_deg).items()},
-        **_rpe("rpe_step", rpe(ref_T, est_T, tracked=tracked)),
-        **_rpe("rpe_second", rpe(ref_T, est_T, 1, "seconds", stamps_ns=stamps_ns, tracked=tracked)),
-        **_rpe("rpe_metre", rpe(ref_T, est_T, 1, "metres", tracked=tracked)),
-        **_rpe_all_steps(ref_T, est_T, tracked),
+        **_rpe("rpe_step", rpe(ref_T, est_T, tracked=judged)),
+        **_rpe("rpe_second", rpe(ref_T, est_T, 1, "seconds", stamps_ns=stamps_ns, tracked=judged)),
+        **_rpe("rpe_metre", rpe(ref_T, est_T, 1, "metres", tracked=judged)),
+        **_rpe_all_steps(ref_T, est_T, judged),
         "drift_trans_percent": drift.trans_percent,
         "drift_rot_deg_per_m": drift.rot_deg_per_m,
+        "drift_segments": drift.segments,
     }
 
 
@@ -92,61 +118,58 @@ def _rpe_all_steps(ref_T: FloatArray, est_T: FloatArray, tracked: BoolArray) -> 
     return {"rpe_trans_rmse_m": trans_rmse_m, "rpe_rot_mean_deg": rot_mean_deg}
 
 
-def correctness_summary(poses: FramePoses, n_est: int) -> Summary:
+def correctness_summary(poses: FramePoses, n_est: int, n_truth: int, *, frames_known: bool) -> Summary:
     """How much of what there was to be tracked came out right; NaN without frames.
 
-    n_est: number of all estimated poses, also of those that the truth, or the evaluated map, has none for.
+    n_est, n_truth: numbers of estimated poses that can be judged, or belong to another map, and of true ones.
 
-    - `correct_rate`, `relocalization_score`: OpenLORIS' ones; a pose is correct within 0.1 m and 10 degrees.
+    - `correct_rate`: OpenLORIS' one, of poses correct within 0.1 m and 10 degrees. Where the frames are known, a frame
+      without a correct pose ends the time for which the one before holds.
     - `f1_area`: SubT-MRS' F1, here of position errors, over thresholds up to 0.5 m.
     """
-    stamps_ns, ref_T, est_T, tracked, aligned = poses
+    stamps_ns, judged = poses.stamps_ns, poses.judged & poses.aligned
     if not len(stamps_ns):
-        return {"correct_rate": np.nan, "relocalization_score": np.nan, "f1_area": np.nan}
-    judged = tracked & aligned
-    trans_m, rot_deg = absolute_errors(ref_T[judged], est_T[judged])
-    correct = correct_poses(trans_m, rot_deg, max_trans_m=CORRECT_TRANS_M, max_rot_deg=CORRECT_ROT_DEG)
+        return {"correct_rate": np.nan, "f1_area": np.nan}
+    trans_m, rot_deg = _errors(poses)
+    correct = np.zeros(len(stamps_ns), dtype=np.bool_)
+    correct[judged] = correct_poses(trans_m, rot_deg, max_trans_m=CORRECT_TRANS_M, max_rot_deg=CORRECT_ROT_DEG)
+    counted = np.ones_like(judged) if frames_known else judged
     start_ns, end_ns = int(stamps_ns[0]), int(stamps_ns[-1])
-    without_truth = np.full(max(n_est - len(trans_m), 0), np.nan)
+    not_judged = np.full(max(n_est - len(trans_m), 0), np.nan)
     return {
-        "correct_rate": correct_rate(stamps_ns[judged], correct, start_ns, end_ns),
-        "relocalization_score": relocalization_score(stamps_ns[judged], correct, start_ns),
-        "f1_area": precision_recall_area(np.concatenate([trans_m, without_truth]), len(ref_T), F1_MAX_M).f1,
+        "correct_rate": correct_rate(stamps_ns[counted], correct[counted], start_ns, end_ns),
+        "f1_area": precision_recall_area(np.concatenate([trans_m, not_judged]), n_truth, F1_MAX_M).f1,
     }
 
 
 def tracking_summary(
     stamps_ns: IntArray, ref_T: FloatArray, tracked: BoolArray, losses: Sequence[LossEvent]
 ) -> Summary:
-    """How much was tracked, and how often that broke; the arrays as in `FramePoses`.
+    """How much was tracked, and how often that broke; stamps_ns and ref_T as in `FramePoses`, tracked bool (N,).
 
-    - `completion`: share of the frames that is tracked; `completion_time`, `completion_distance`: of the time and of
-      the true path.
+    - `completion`: share of the frames that is tracked; `completion_of_time`, `completion_of_distance`: of the time and
+      of the true path.
     - `losses`: list of `LossEvent`s as mappings; `loss_count`; `time_to_first_loss_s`, from the first frame.
     - `losses_per_minute`, `losses_per_metre`, `mean_time_between_losses_s`, `mean_distance_between_losses_m`,
-      `mean_time_to_relocalize_s`: see `failure_rates`.
+      `relocalized_count`, `mean_time_to_relocalize_s`: see `failure_rates`.
     """
     shares = completion(stamps_ns, ref_T, tracked)
-    rates = failure_rates(losses, exposure(stamps_ns, ref_T, tracked))
     return {
         "completion": shares.frames,
-        "completion_time": shares.time,
-        "completion_distance": shares.distance,
+        "completion_of_time": shares.time,
+        "completion_of_distance": shares.distance,
         "losses": [asdict(loss) for loss in losses],
-        "loss_count": len(losses),
         "time_to_first_loss_s": losses[0].start_s if losses else np.nan,
-        "losses_per_minute": rates.losses_per_minute,
-        "losses_per_metre": rates.losses_per_metre,
-        "mean_time_between_losses_s": rates.mean_time_between_s,
-        "mean_distance_between_losses_m": rates.mean_distance_between_m,
-        "mean_time_to_relocalize_s": rates.mean_time_to_relocalize_s,
+        **failure_rates(losses, exposure(stamps_ns, ref_T, tracked))._asdict(),
     }
 
 
 def motion_summary(stamps_ns: IntArray, ref_T: FloatArray) -> Summary:
-    """How the camera moved: all of `slamgym.eval.trajectories.SequenceAttributes` but the number of frames."""
+    """How the camera moved, a frame and a second: those of `slamgym.eval.trajectories.SequenceAttributes` that are
+    rates, which mean little where the frames are not those of the camera.
+    """
     attributes = sequence_attributes(stamps_ns, ref_T)._asdict()
-    return {name: value for name, value in attributes.items() if name != "frames"}
+    return {name: attributes[name] for name in MOTION_RATES}
 
 
 def without_nan(value: Any) -> Any:

@@ -20,6 +20,8 @@ def main(folder: tyro.conf.Positional[Path], factor: str = "speed", pictures: Pa
     runs = pd.DataFrame([load(path.parent) for path in sorted(folder.rglob("episode.json"))])
     if runs.empty:
         sys.exit(f"analyse_runs: expected run folders with an episode.json below {folder}, got none")
+    if factor not in runs or not pd.api.types.is_numeric_dtype(runs[factor]):
+        sys.exit(f"analyse_runs: expected a number that the runs differ in as factor, such as speed, got {factor!r}")
     levels, failed = runs[factor].to_numpy(), ~runs["success"].to_numpy()
     ate, held_ate = (runs[key].to_numpy(np.float64) for key in ("ate_rmse_m", "ate_held_rmse_m"))
     print(f"{len(runs)} runs:", ", ".join(f"{n} {status}" for status, n in status_counts(runs["status"]).items() if n))
@@ -40,7 +42,7 @@ def load(folder: Path) -> dict[str, object]:
     """Parameters and results of one run; runs of one scene and seed drove the same path."""
     config = yaml.safe_load((folder / "config.yaml").read_text())
     result = json.loads((folder / "episode.json").read_text())
-    return {**config, **result, "path": f"{config['scene']} {result['seed']}"}
+    return {**result, **config, "path": f"{config['scene']} {result['seed']}"}
 
 
 if __name__ == "__main__":

@@ -135,7 +135,7 @@ def _episode(env: RobotEnv, agent: Agent, seed: int, steps: tuple[Step, ...], en
             "end": end,
             **summary,
             "progress_m": steps[-1].progress_m,
-            "path_length_m": robot.path.length_m,
+            "planned_path_m": robot.path.length_m,
             "collision_steps": sum(step.collision for step in steps),
             "return": sum(step.reward for step in steps),
         },

@@ -4,6 +4,7 @@ config.yaml      all parameters, as they were resolved
 episode.json     the results, the keys of `info["episode_slam"]` at the top level
 groundtruth.txt  true poses of the camera's optical frame at every rendered frame, TUM format
 estimate.txt     the SLAM's final poses in the evaluated map, TUM format
+fed_frames.txt   stamps of the frames that the SLAM was given, for `slamgym eval --frames`
 frames.csv       one row a rendered frame: motion of the robot, and the SLAM's answer where the frame was fed
 map.png          seen from above: grid, planned and true path, aligned estimate, losses
 slam.log         what the SLAM printed, the last MiB of it
@@ -20,9 +21,9 @@ import yaml
 
 from slamgym.errors import OutputError
 from slamgym.eval.plots.drive_map import plot_map
-from slamgym.eval.robustness import estimate_by_frame, evaluated_map
+from slamgym.eval.robustness import estimate_by_frame, evaluated_frames
 from slamgym.eval.summary import without_nan
-from slamgym.eval.trajectories import Trajectory, write_tum
+from slamgym.eval.trajectories import Trajectory, write_stamps, write_tum
 from slamgym.interrupt import deferred_interrupt
 from slamgym.rollout import Episode
 from slamgym.types import SlamRecord, TrackingState
@@ -95,8 +96,8 @@ def frames_table(episode: Episode) -> pd.DataFrame:
 
 def final_estimate(record: SlamRecord) -> Trajectory:
     """The SLAM's final poses (T_map_cam) in the evaluated map; empty when no frame was tracked."""
-    T_map_cam, map_id = estimate_by_frame(record)
-    chosen = (map_id == evaluated_map(record)) & (map_id >= 0)
+    T_map_cam, _ = estimate_by_frame(record)
+    chosen = evaluated_frames(record)
     return Trajectory(record.stamps_ns[chosen], T_map_cam[chosen])
 
 
@@ -126,4 +127,5 @@ def _write_files(episode: Episode, folder: Path) -> None:
     (folder / "slam.log").write_text(episode.slam_log)
     if episode.slam is not None:
         write_tum(folder / "estimate.txt", final_estimate(episode.slam))
+        write_stamps(folder / "fed_frames.txt", episode.slam.stamps_ns)
     plot_map(folder / "map.png", episode.grid, episode.path_xy, episode.T_world_cam, episode.slam, episode.summary)

@@ -14,7 +14,10 @@ import yaml
 from slamgym.cli import main
 
 FAST = ["--camera", "small", "--path-length-m", "1.5", "--speed", "0.5"]
-FILES = {"config.yaml", "episode.json", "groundtruth.txt", "estimate.txt", "frames.csv", "map.png", "slam.log"}
+FILES = {
+    "config.yaml", "episode.json", "groundtruth.txt", "estimate.txt", "fed_frames.txt", "frames.csv", "map.png",
+    "slam.log",
+}  # fmt: skip
 
 
 def test_run_writes_a_complete_folder(tmp_path, capsys):

@@ -11,7 +11,11 @@ import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
 from slamgym.errors import OutputError
 from slamgym.eval.accuracy import ate
-from slamgym.eval.trajectories import read_tum
+from slamgym.eval.drive import summarize_drive
+from slamgym.eval.episode import summarize_slam
+from slamgym.eval.evaluation import evaluate
+from slamgym.eval.summary import without_nan
+from slamgym.eval.trajectories import read_stamps, read_tum
 from slamgym.rollout import EpisodeInterrupted, run_episode
 from slamgym.run_folder import write_run
 
@@ -39,11 +43,32 @@ def test_run_folder_says_the_same_as_the_episode(episode, tmp_path):
     assert written["ate_rmse_m"] == episode.summary["ate_rmse_m"]
     assert written["time_to_first_loss_s"] is None  # NaN has no place in JSON
     truth, estimate = read_tum(folder / "groundtruth.txt"), read_tum(folder / "estimate.txt")
+    np.testing.assert_array_equal(read_stamps(folder / "fed_frames.txt"), episode.slam.stamps_ns)
     at = np.searchsorted(truth.stamps_ns, estimate.stamps_ns)
     assert np.array_equal(truth.stamps_ns[at], estimate.stamps_ns)
     assert ate(truth.T[at], estimate.T).trans_m.rmse == pytest.approx(written["ate_rmse_m"], abs=1e-7)
     # Optical frame: the camera's y axis points down.
     assert truth.T[:, 2, 1] == pytest.approx(-1.0)
+
+
+def test_the_files_of_a_run_folder_evaluate_to_what_its_results_say(episode, tmp_path):
+    folder = write_run(episode, tmp_path / "run")
+    written = json.loads((folder / "episode.json").read_text())
+    truth, estimate = read_tum(folder / "groundtruth.txt"), read_tum(folder / "estimate.txt")
+    again = without_nan(evaluate(truth, estimate, frames_ns=read_stamps(folder / "fed_frames.txt")).summary)
+    common = (written.keys() & again.keys()) - {"distance_m"}  # of the drive along the floor, not of the camera
+    figures = {key for key in common if isinstance(written[key], float)}
+    assert len(figures) > 35
+    assert {key: again[key] for key in figures} == pytest.approx({key: written[key] for key in figures}, abs=1e-4)
+    assert {key: again[key] for key in common - figures} == {key: written[key] for key in common - figures}
+
+
+def test_no_figure_of_an_episode_hides_another(episode):
+    drive = summarize_drive(episode.stamps_ns, episode.T_world_cam, episode.path_xy, 0.4)
+    slam = summarize_slam(episode.slam)
+    assert not drive.keys() & slam.keys()
+    assert not episode.config.keys() & episode.summary.keys()
+    assert episode.summary["path_deviation_max_m"] == drive["path_deviation_max_m"]
 
 
 def test_a_written_config_repeats_the_drive(episode, tmp_path):

@@ -37,8 +37,8 @@ def align(ref_T: FloatArray, est_T: FloatArray, alignment: str = "se3") -> Simil
     - "none": as they are.
 
     Positions on one line leave the turn about it open; one of the best transforms is returned then, and what it does to
-    rotations means nothing. "se3" and "sim3" after Umeyama, "Least-squares estimation of transformation parameters
-    between two point patterns", PAMI 1991.
+    rotations means nothing: see `free_turn`. "se3" and "sim3" after Umeyama, "Least-squares estimation of
+    transformation parameters between two point patterns", PAMI 1991.
 
     Raises ConfigError for an unknown alignment; TrajectoryError for fewer than 3 poses ("se3", "sim3") or none
     ("first_pose"), positions all in one place ("sim3"), and arrays that are not finite rigid poses in pairs.
@@ -47,6 +47,13 @@ def align(ref_T: FloatArray, est_T: FloatArray, alignment: str = "se3") -> Simil
         raise ConfigError(unknown_word("alignment", alignment, ALIGNMENTS))
     check_poses(ref_T, est_T)
     return _ALIGNMENTS[alignment](ref_T, est_T)
+
+
+def is_determined(ref_T: FloatArray, est_T: FloatArray, alignment: str) -> bool:
+    """Whether there are poses enough, and for "sim3" ones that move, for `align` not to be refused; poses as there."""
+    if len(ref_T) < _POSES_NEEDED[alignment]:
+        return False
+    return alignment != "sim3" or not (_in_one_place(ref_T[:, :3, 3]) or _in_one_place(est_T[:, :3, 3]))
 
 
 def _se3(ref_T: FloatArray, est_T: FloatArray) -> Similarity:
@@ -75,11 +82,12 @@ _ALIGNMENTS: dict[str, Callable[[FloatArray, FloatArray], Similarity]] = {
 }
 
 ALIGNMENTS = tuple(_ALIGNMENTS)
+_POSES_NEEDED = {"se3": 3, "sim3": 3, "first_pose": 1, "none": 0}
 
 
 def _umeyama(source: FloatArray, target: FloatArray, *, with_scale: bool) -> Similarity:
     """The transform that takes the points `source` (N, 3) closest to `target` (N, 3), in least squares."""
-    if len(source) < 3:
+    if len(source) < _POSES_NEEDED["se3"]:
         raise TrajectoryError(f"alignment: expected at least 3 poses, got {len(source)}: use 'first_pose' or 'none'")
     if with_scale:
         _check_moving(source, target)
@@ -98,6 +106,11 @@ def _umeyama(source: FloatArray, target: FloatArray, *, with_scale: bool) -> Sim
 
 def _check_moving(source: FloatArray, target: FloatArray) -> None:
     for name, positions in (("estimate", source), ("truth", target)):
-        rounding = 8 * np.finfo(np.float64).eps * np.abs(positions).max()
-        if np.ptp(positions, axis=0).max() <= rounding:
+        if _in_one_place(positions):
             raise TrajectoryError(f"sim3: expected positions that move, got all of the {name} in one place: use 'se3'")
+
+
+def _in_one_place(positions: FloatArray) -> bool:
+    """Whether positions (N, 3) differ by no more than rounding."""
+    rounding = 8 * np.finfo(np.float64).eps * np.abs(positions).max()
+    return bool(np.ptp(positions, axis=0).max() <= rounding)

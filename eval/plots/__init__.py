@@ -5,7 +5,7 @@ from slamgym.eval.plots.cumulative import plot_cumulative
 from slamgym.eval.plots.drive_map import plot_map
 from slamgym.eval.plots.evaluation import evaluation_plots
 from slamgym.eval.plots.failure_curve import plot_failure_curve
-from slamgym.eval.plots.names import shorten
+from slamgym.eval.plots.names import printable
 from slamgym.eval.plots.scatter import RankCorrelation, plot_scatter
 from slamgym.eval.plots.sorted_bars import plot_sorted_bars
 from slamgym.eval.plots.style import save_figure
@@ -23,6 +23,6 @@ __all__ = [
     "plot_sorted_bars",
     "plot_trajectory_time",
     "plot_trajectory_top",
+    "printable",
     "save_figure",
-    "shorten",
 ]

@@ -32,7 +32,11 @@ def plot_boxes(values: Mapping[str, ArrayLike], *, quantity: str = "ATE RMSE (m)
     """
     runs = as_runs(values)
     scale = value_scale(runs.values())
-    figure = new_figure(float(np.clip(1.0 * len(runs), 6.0, 14.0)), 5.0)
+    width_in = float(np.clip(1.0 * len(runs), 6.0, 14.0))
+    fits = int(11 * width_in / len(runs)) - 1
+    names = plain_names(runs, max(fits, 24))
+    upright_letters = max(map(len, names)) if max(map(len, names)) > fits else 0
+    figure = new_figure(width_in, 5.0 + 0.06 * upright_letters)
     axes = figure.add_subplot()
     set_value_axis(axes, "y", scale, quantity, failed=True)
     draw_failed_band(axes, scale)
@@ -41,9 +45,8 @@ def plot_boxes(values: Mapping[str, ArrayLike], *, quantity: str = "ATE RMSE (m)
     for i, numbers in enumerate(runs.values()):
         _draw_box(axes, i, numbers, scale)
         _draw_points(axes, i, numbers, scale)
-    names = plain_names(runs, max(int(11 * figure.get_figwidth() / len(runs)) - 1, 6))
     counts = [f"{name}\nn = {len(n)}\n{_failed(n)}" for name, n in zip(names, runs.values(), strict=True)]
-    axes.set_xticks(np.arange(len(runs)), counts, fontsize=9)
+    axes.set_xticks(np.arange(len(runs)), counts, fontsize=9, rotation=90 if upright_letters else 0)
     axes.set(xlim=(-0.6, len(runs) - 0.4), xlabel=plain(by, 60))
     axes.set_title(f"{failed_of(np.concatenate(list(runs.values())))}; boxes rank them last", loc="left")
     return figure

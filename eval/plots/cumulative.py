@@ -22,17 +22,21 @@ from slamgym.eval.plots.value_scale import (
 )
 from slamgym.types import FloatArray
 
-# Least distance of two labels at the curves' ends, in shares of the axis.
+# Least distance of two labels at the curves' ends, in shares of the axis, as long as all have room.
 LABEL_STEP = 0.055
 
 
 def plot_cumulative(
-    values: Mapping[str, ArrayLike], *, quantity: str = "ATE RMSE (m)", counted: str = "runs"
+    values: Mapping[str, ArrayLike],
+    *,
+    quantity: str = "ATE RMSE (m)",
+    counted: str = "runs",
+    failed: str = "failed",
 ) -> Figure:
     """A curve for each system over its values (R,), on a logarithmic x axis; its end is the share that did not fail.
 
-    A failed run is NaN or infinite, and counts in the total. counted: what the values are of, for example "frames".
-    Raises ConfigError.
+    A failed run is NaN or infinite, and counts in the total. counted: what the values are of, for example "frames";
+    failed: the word for those that failed. Raises ConfigError.
     """
     runs = as_runs(values)
     scale = value_scale(runs.values())
@@ -43,7 +47,7 @@ def plot_cumulative(
     axes.yaxis.set_major_formatter("{x:.0%}")
     tidy(axes)
     lines = [
-        _draw_curve(axes, numbers, scale, look(i), f"{name}: {failed_of(numbers, counted)}")
+        _draw_curve(axes, numbers, scale, look(i), f"{name}: {failed_of(numbers, counted, failed)}")
         for i, (name, numbers) in enumerate(zip(plain_names(runs), runs.values(), strict=True))
     ]
     _label_ends(axes, [_share(numbers) for numbers in runs.values()])
@@ -78,13 +82,14 @@ def _label_ends(axes: Axes, shares: list[float]) -> None:
 
 
 def _apart(shares: list[float]) -> FloatArray:
-    """Heights of the labels, in the order of the shares, `LABEL_STEP` or more from each other and none above 1."""
+    """Heights of the labels, in the order of the shares, apart from each other and none below 0 or above 1."""
+    step = min(LABEL_STEP, 1.0 / max(len(shares) - 1, 1))
     order = np.argsort(shares, kind="stable")
     heights: FloatArray = np.array(shares)
     for below, above in pairwise(order):
-        heights[above] = max(heights[above], heights[below] + LABEL_STEP)
+        heights[above] = max(heights[above], heights[below] + step)
     highest = 1.0
     for k in order[::-1]:
         heights[k] = min(heights[k], highest)
-        highest = heights[k] - LABEL_STEP
+        highest = heights[k] - step
     return heights

@@ -94,7 +94,7 @@ def _aligned_xy(T_world_cam: FloatArray, T_map_cam: FloatArray, frames: BoolArra
 def _draw_losses(axes: Axes, slam: SlamRecord) -> None:
     xy = slam.T_world_cam[:, :2, 3]
     for i, loss in enumerate(find_losses(slam)):
-        cross = draw_lost(axes, xy[loss.start_frame : loss.end_frame + 2])
+        cross = draw_lost(axes, xy, loss.start_frame, loss.end_frame + 1)
         if i > 0:
             cross.set_label(None)
 

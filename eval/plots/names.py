@@ -1,4 +1,4 @@
-"""Names of other people's systems, sequences and attributes, as text in a picture."""
+"""Names of other people's systems, sequences and attributes, as text in a picture or on a terminal."""
 
 import math
 from collections import Counter
@@ -11,12 +11,12 @@ def plain(text: str, max_letters: int = MAX_LETTERS) -> str:
     """`text` so that matplotlib draws it letter by letter: in one line, without mathematics between dollar signs, the
     middle left out where it is longer than `max_letters`.
     """
-    return shorten(_printable(text), max_letters).replace("$", r"\$")
+    return shorten(printable(text), max_letters).replace("$", r"\$")
 
 
 def plain_names(names: Iterable[str], max_letters: int = MAX_LETTERS) -> list[str]:
     """`plain` for names side by side: those that look the same once shortened are numbered."""
-    short = [shorten(_printable(name), max_letters) for name in names]
+    short = [shorten(printable(name), max_letters) for name in names]
     total, seen, unique = Counter(short), Counter[str](), []
     for name in short:
         seen[name] += 1
@@ -37,6 +37,8 @@ def shorten(text: str, max_letters: int) -> str:
     return f"{text[:head]}…{text[len(text) - (max_letters - 1 - head) :]}"
 
 
-def _printable(text: str) -> str:
-    """In one line; what no picture can show, such as control characters, which XML forbids, becomes a question mark."""
+def printable(text: str) -> str:
+    """`text` in one line, for a picture or a terminal: each white space becomes one blank; what neither can show, such
+    as control characters, which XML forbids and a terminal obeys, becomes U+FFFD, a question mark in a lozenge.
+    """
     return "".join(letter if letter.isprintable() else "\N{REPLACEMENT CHARACTER}" for letter in " ".join(text.split()))

@@ -33,13 +33,14 @@ def plot_sorted_bars(
     names: Sequence[str] = (),
     threshold: float = np.nan,
     gap: tuple[float, float] = (np.nan, np.nan),
+    failed_when: str = "",
 ) -> Figure:
     """A panel for each system: its values (R,), sorted, on a logarithmic axis that all panels share.
 
     A failed run is NaN or infinite: a hatched bar at the right, up to the top, and counted in the panel's title.
     names: what the R runs are, the same for all systems. threshold: separates good runs from failed ones, in the
-    values' unit; gap: the values below and above it, between which the panel is shaded; NaN for none.
-    Raises ConfigError.
+    values' unit; gap: the values below and above it, between which the panel is shaded; NaN for none. failed_when: what
+    failed means, said above the panels. Raises ConfigError.
     """
     runs = as_runs(values)
     _check_names(runs, names)
@@ -54,6 +55,8 @@ def plot_sorted_bars(
         _draw_bars(axes, numbers, scale, look(i).colour)
         _label_bars(axes, numbers, labels)
         axes.set_title(f"{title}: {failed_of(numbers)}", loc="left")
+    if failed_when:
+        figure.suptitle(f"failed: {failed_when}", x=0.01, ha="left", fontsize=9)
     legend_below(figure, handles)
     return figure
 

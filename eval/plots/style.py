@@ -27,6 +27,7 @@ DASHES: tuple[tuple[int, tuple[float, ...] | None], ...] = (
 )
 MARKERS = ("o", "^", "s", "D", "v", "P", "<")
 DPI = 120
+LEGEND_ROW_IN = 0.21
 
 
 class Look(NamedTuple):
@@ -56,7 +57,10 @@ def tidy(axes: Axes, *, grid: bool = True) -> None:
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
-    """A legend under the axes, never over the data, of the artists' own labels, in as many columns as fit."""
+    """A legend under the axes, never over the data, of the artists' own labels, in as many columns as fit.
+
+    The figure grows by the legend's height, so that the axes keep theirs.
+    """
     # Given as they are: matplotlib would leave out a label that it reads itself and that starts with "_".
     labels = [str(handle.get_label()) for handle in handles]
     if labels:
@@ -64,6 +68,7 @@ def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
         fit = np.clip(letters_a_line // (max(map(len, labels)) + 7), 1, 4)
         rows = np.ceil(len(labels) / fit)
         columns = int(np.ceil(len(labels) / rows))
+        figure.set_figheight(figure.get_figheight() + LEGEND_ROW_IN * rows)
         figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False)
 
 

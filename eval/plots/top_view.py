@@ -2,10 +2,13 @@
 
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from slamgym.eval.plots.style import LOST, TRUTH
+from slamgym.eval.plots.tracked import posed_frames
+from slamgym.eval.robustness import last_posed
 from slamgym.types import FloatArray
 
 LOST_CROSS: dict[str, Any] = {
@@ -18,19 +21,20 @@ LOST_CROSS: dict[str, Any] = {
 }
 
 
-def set_top_view(axes: Axes) -> None:
-    """One metre is as long in x as in y."""
+def set_top_view(axes: Axes, upwards: str = "y") -> None:
+    """One metre is as long in x as upwards, where the picture has the axis y or, in a camera's frame, z."""
     axes.set_aspect("equal")
     axes.set_xlabel("x (m)")
-    axes.set_ylabel("y (m)")
+    axes.set_ylabel(f"{upwards} (m)")
 
 
 def draw_truth(axes: Axes, xy: FloatArray) -> list[Line2D]:
-    """The true path (N, 2) with its ends; what the legend needs of it."""
+    """The true path (N, 2), NaN where it is not known, with its ends; what the legend needs of it."""
     (line,) = axes.plot(*xy.T, color=TRUTH, linewidth=2.0, zorder=1.8, label="true path")
-    if not len(xy):
+    known = np.flatnonzero(posed_frames(xy))
+    if not len(known):
         return [line]
-    ends = (("start", "o", xy[0]), ("end", "s", xy[-1]))
+    ends = (("start", "o", xy[known[0]]), ("end", "s", xy[known[-1]]))
     return [line, *(_draw_end(axes, label, marker, end) for label, marker, end in ends)]
 
 
@@ -41,9 +45,12 @@ def _draw_end(axes: Axes, label: str, marker: str, xy: FloatArray) -> Line2D:
     return end
 
 
-def draw_lost(axes: Axes, xy: FloatArray, colour: str = LOST) -> Line2D:
-    """A loss along the true positions (K, 2), K >= 1: a broad band below the true path, and its start above all."""
-    axes.plot(*xy.T, color=colour, alpha=0.6, linewidth=7.0, solid_capstyle="butt", zorder=1.5)
+def draw_lost(axes: Axes, xy: FloatArray, start: int, after: int, colour: str = LOST) -> Line2D:
+    """A loss from frame `start` on, up to `after`, the next tracked one: a broad band below the true path (N, 2), and
+    a cross above all where it started, or at the last known position before.
+    """
+    axes.plot(*xy[start : after + 1].T, color=colour, alpha=0.6, linewidth=7.0, solid_capstyle="butt", zorder=1.5)
+    last_known = last_posed(posed_frames(xy))
     # A loss may be shorter than the line is wide.
-    (cross,) = axes.plot(*xy[0], color=colour, zorder=4, **LOST_CROSS)
+    (cross,) = axes.plot(*xy[last_known[start]], color=colour, zorder=4, **LOST_CROSS)
     return cross

@@ -43,9 +43,9 @@ def failed_runs(values: FloatArray) -> BoolArray:
     return ~np.isfinite(values)
 
 
-def failed_of(values: FloatArray, counted: str = "runs") -> str:
-    """How many failed, in words, of the runs or what else is counted."""
-    return f"{np.count_nonzero(failed_runs(values))} of {len(values)} {counted} failed"
+def failed_of(values: FloatArray, counted: str = "runs", failed: str = "failed") -> str:
+    """How many failed, in words, of the runs or what else is counted; failed: the word for it."""
+    return f"{np.count_nonzero(failed_runs(values))} of {len(values)} {counted} {failed}"
 
 
 def value_scale(values: Iterable[ArrayLike], *, log: bool = True) -> ValueScale:

@@ -11,20 +11,20 @@ from slamgym.eval.robustness.error_area import error_area
 from slamgym.eval.robustness.evaluated_map import (
     estimate_by_frame,
     evaluated_frames,
-    evaluated_map,
     final_by_frame,
     most_frequent_map,
 )
 from slamgym.eval.robustness.failure_policy import POLICIES, Average, average
 from slamgym.eval.robustness.failure_rates import FailureRates, failure_rates, status_counts
-from slamgym.eval.robustness.gaps import covered_frames, find_gaps
-from slamgym.eval.robustness.held_pose import held_ate, hold_last_pose
-from slamgym.eval.robustness.losses import STATUSES, find_losses, seconds_between, status, success, tracked_frames
+from slamgym.eval.robustness.gaps import covered_frames, find_gaps, untracked_runs
+from slamgym.eval.robustness.held_pose import held_ate, hold_last_pose, last_posed
+from slamgym.eval.robustness.losses import STATUSES, SUCCESS_COMPLETION, find_losses, is_success, status, tracked_frames
 from slamgym.eval.robustness.precision_recall import PrecisionRecall, precision_recall, precision_recall_area
 
 __all__ = [
     "POLICIES",
     "STATUSES",
+    "SUCCESS_COMPLETION",
     "Average",
     "Completion",
     "Exposure",
@@ -39,7 +39,6 @@ __all__ = [
     "error_area",
     "estimate_by_frame",
     "evaluated_frames",
-    "evaluated_map",
     "exposure",
     "failure_rates",
     "final_by_frame",
@@ -47,14 +46,15 @@ __all__ = [
     "find_losses",
     "held_ate",
     "hold_last_pose",
+    "is_success",
+    "last_posed",
     "most_frequent_map",
     "precision_recall",
     "precision_recall_area",
     "relocalization_score",
-    "seconds_between",
     "status",
     "status_counts",
-    "success",
     "total_exposure",
     "tracked_frames",
+    "untracked_runs",
 ]

@@ -37,11 +37,6 @@ def most_frequent_map(map_ids: IntArray) -> int:
     return int(ids[np.lexsort((first, -count))[0]]) if len(ids) else -1
 
 
-def evaluated_map(record: SlamRecord) -> int:
-    """The largest map by tracked frames, the earliest of those that tie; -1 when there is none."""
-    return most_frequent_map(estimate_by_frame(record)[1])
-
-
 def evaluated_frames(record: SlamRecord) -> BoolArray:
     """Whether each fed frame is tracked in the evaluated map (N,): the `tracked` of plain trajectories."""
     _, maps = estimate_by_frame(record)

@@ -45,7 +45,7 @@ def average(
     """Median or mean of the `values` (R,) of R runs, such as their ATE, of which some `failed`, bool (R,).
 
     policy: "drop" leaves failed runs out, which flatters a SLAM that fails where it is hard; "penalise" puts `penalty`
-    in their place, which should be worse than any run that did not fail (infinite ranks them last, for medians only);
+    in their place, not below the value of any run that did not fail (infinite ranks them last, for medians only);
     "hold_last_pose" puts their values of `held` (R,) there, see `held_ate`. Values of failed runs never count. NaN when
     no run is left.
     Raises ConfigError for unknown words and options that are missing or contradict each other, TrajectoryError for
@@ -57,6 +57,10 @@ def average(
     if not (np.isfinite(good).all() and (penalty is not None or np.isfinite(instead).all())):
         raise TrajectoryError(
             "average over runs: expected finite values, got NaN or infinity: mark such runs as failed"
+        )
+    if penalty is not None and len(good) and penalty < good.max():
+        raise ConfigError(
+            f"expected a penalty worse than every run that did not fail, got {penalty:g}, below {good.max():.3g}"
         )
     chosen = np.concatenate([good, instead])
     value = float(STATISTICS[statistic](chosen)) if len(chosen) else np.nan

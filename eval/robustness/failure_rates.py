@@ -18,8 +18,8 @@ class FailureRates(NamedTuple):
     loss_count: int
     losses_per_minute: float
     losses_per_metre: float
-    mean_time_between_s: float
-    mean_distance_between_m: float
+    mean_time_between_losses_s: float
+    mean_distance_between_losses_m: float
     relocalized_count: int
     mean_time_to_relocalize_s: float
 
@@ -29,9 +29,9 @@ def failure_rates(losses: Sequence[LossEvent], drive: Exposure) -> FailureRates:
 
     - `losses_per_minute`, `losses_per_metre`: losses / time and true distance of the whole drive. A SLAM that is lost
       cannot get lost: read them beside completion.
-    - `mean_time_between_s`, `mean_distance_between_m`: MTBF = operating time / number of failures, and the same of the
-      distance; operating is what was tracked. Infinite without a loss: none was seen in `tracked_s`, which is all that
-      can be said.
+    - `mean_time_between_losses_s`, `mean_distance_between_losses_m`: MTBF = operating time / number of failures, and
+      the same of the distance; operating is what was tracked. Infinite without a loss: none was seen in `tracked_s`,
+      which is all that can be said.
     - `relocalized_count`: losses that ended in the map of before; `mean_time_to_relocalize_s`: mean duration of these,
       NaN when there is none. The others count in `loss_count` only.
 
@@ -45,8 +45,8 @@ def failure_rates(losses: Sequence[LossEvent], drive: Exposure) -> FailureRates:
         loss_count=n,
         losses_per_minute=60.0 * n / drive.duration_s if operated and drive.duration_s > 0 else np.nan,
         losses_per_metre=n / drive.distance_m if operated and drive.distance_m > 0 else np.nan,
-        mean_time_between_s=_between(drive.tracked_s, n),
-        mean_distance_between_m=_between(drive.tracked_m, n),
+        mean_time_between_losses_s=_between(drive.tracked_s, n),
+        mean_distance_between_losses_m=_between(drive.tracked_m, n),
         relocalized_count=len(back_s),
         mean_time_to_relocalize_s=float(np.mean(back_s)) if back_s else np.nan,
     )

@@ -62,12 +62,14 @@ def find_gaps(stamps_ns: IntArray, T_world_cam: FloatArray, tracked: BoolArray) 
             rotation_deg=float(np.rad2deg(step_rad[start:after].sum())),
             outcome="relocalized" if after < len(tracked) else "never",
         )
-        for start, after in _untracked_runs(tracked)
+        for start, after in untracked_runs(tracked)
     ]
 
 
-def _untracked_runs(tracked: BoolArray) -> list[tuple[int, int]]:
-    """First frame of each run without a pose, after the first frame with one, and the first frame after the run."""
+def untracked_runs(tracked: BoolArray) -> list[tuple[int, int]]:
+    """First frame of each run of frames without a pose, after the first with one, and the first frame after the run;
+    tracked: bool (N,), N after a run that lasts to the end.
+    """
     # A tracked frame past the end closes a run that is still open there.
     frames = np.flatnonzero(np.append(tracked, True))
     start, after = frames[:-1] + 1, frames[1:]

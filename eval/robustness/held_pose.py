@@ -3,8 +3,8 @@
 import numpy as np
 
 from slamgym.errors import TrajectoryError
-from slamgym.eval.accuracy import ErrorStats, absolute_errors, align
-from slamgym.types import BoolArray, FloatArray
+from slamgym.eval.accuracy import ErrorStats, absolute_errors, align, is_determined
+from slamgym.types import BoolArray, FloatArray, IntArray
 
 
 def hold_last_pose(est_T: FloatArray, tracked: BoolArray, first_T: FloatArray) -> FloatArray:
@@ -20,8 +20,13 @@ def hold_last_pose(est_T: FloatArray, tracked: BoolArray, first_T: FloatArray) -
         raise TrajectoryError(f"held poses: expected `tracked` as bool (N,) and poses (N, 4, 4), got {got}")
     if not tracked.any():
         return np.tile(first_T, (len(est_T), 1, 1))
-    frames = np.where(tracked, np.arange(len(tracked)), np.argmax(tracked))
-    return np.asarray(est_T[np.maximum.accumulate(frames)])
+    return np.asarray(est_T[last_posed(tracked)])
+
+
+def last_posed(posed: BoolArray) -> IntArray:
+    """For each frame (N,) the last one up to it that has a pose, or the first that has one; 0 where none has."""
+    frames = np.where(posed, np.arange(len(posed)), np.argmax(posed) if len(posed) else 0)
+    return np.asarray(np.maximum.accumulate(frames))
 
 
 def held_ate(ref_T: FloatArray, est_T: FloatArray, tracked: BoolArray) -> ErrorStats:
@@ -37,7 +42,7 @@ def held_ate(ref_T: FloatArray, est_T: FloatArray, tracked: BoolArray) -> ErrorS
         return ErrorStats.of(np.empty(0))
     held_T = hold_last_pose(est_T, tracked, ref_T[0])
     if tracked.any():
-        alignment = "se3" if tracked.sum() >= 3 else "first_pose"
+        alignment = "se3" if is_determined(ref_T[tracked], est_T[tracked], "se3") else "first_pose"
         held_T = align(ref_T[tracked], est_T[tracked], alignment).apply(held_T)
     trans_m, _ = absolute_errors(ref_T, held_T)
     return ErrorStats.of(trans_m)

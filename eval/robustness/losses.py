@@ -7,11 +7,14 @@ count.
 from dataclasses import replace
 from typing import cast
 
-from slamgym.eval.robustness.gaps import find_gaps, seconds
+from slamgym.eval.robustness.gaps import find_gaps
 from slamgym.types import BoolArray, LossEvent, SlamEvent, SlamRecord, TrackingState
 
 STATUSES = ("ok", "lost", "init_failed", "crashed", "timeout")
 """All that `status` may say."""
+
+SUCCESS_COMPLETION = 0.5
+"""Share of the frames that a successful run tracks at least; see `is_success`."""
 
 _OUTCOMES = {
     SlamEvent.RELOCALIZED: "relocalized",
@@ -44,11 +47,6 @@ def _outcome(record: SlamRecord, start: int, end: int) -> str:
     return _OUTCOMES.get(record.events[after], "relocalized" if same_map else "new_map")
 
 
-def seconds_between(record: SlamRecord, first: int, last: int) -> float:
-    """Time from one fed frame to another, seconds."""
-    return seconds(record.stamps_ns, first, last)
-
-
 def status(record: SlamRecord) -> str:
     """How the run ended: "crashed", "timeout", "init_failed" (never tracked), "ok" (tracked at the end) or "lost"."""
     ok = tracked_frames(record)
@@ -59,6 +57,8 @@ def status(record: SlamRecord) -> str:
     return "ok" if ok[-1] else "lost"
 
 
-def success(record: SlamRecord) -> bool:
-    """Whether the SLAM tracked to the end without any loss."""
-    return status(record) == "ok" and not find_losses(record)
+def is_success(status: str, loss_count: int, completion: float) -> bool:
+    """Whether a run succeeded: tracked at its end ("ok"), without any loss, and for at least SUCCESS_COMPLETION of the
+    frames: one that initialised just before its end has not.
+    """
+    return status == "ok" and loss_count == 0 and completion >= SUCCESS_COMPLETION

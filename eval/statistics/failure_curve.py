@@ -18,7 +18,7 @@ from scipy import optimize, stats
 from scipy.special import expit, log_expit
 
 from slamgym.errors import ConfigError
-from slamgym.eval.statistics.intervals import Interval, check_confidence
+from slamgym.eval.statistics.intervals import Interval, check_confidence, checked_flags
 from slamgym.types import BoolArray, FloatArray, IntArray
 
 _RIGHT = math.pi / 2
@@ -204,9 +204,10 @@ def _labels(groups: ArrayLike, n: int) -> IntArray:
 
 def _checked(factor: ArrayLike, failed: ArrayLike, confidence: float) -> tuple[FloatArray, BoolArray]:
     check_confidence(confidence)
-    x, failures = np.asarray(factor, dtype=np.float64), np.asarray(failed, dtype=np.bool_)
-    if x.ndim != 1 or x.shape != failures.shape or not len(x):
-        raise ConfigError(f"failure curve: expected two arrays (n,), got shapes {x.shape} and {failures.shape}")
+    x = np.asarray(factor, dtype=np.float64)
+    if x.ndim != 1 or not len(x):
+        raise ConfigError(f"failure curve: expected levels of a factor (n,), n of 1 or more, got shape {x.shape}")
+    failures = checked_flags(failed, len(x))
     if not np.isfinite(x).all():
         raise ConfigError(
             "failure curve: expected finite levels of the factor, got NaN or infinity; leave such runs out"

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from scipy import stats
 
 from slamgym.errors import ConfigError, unknown_word
-from slamgym.types import FloatArray
+from slamgym.types import BoolArray, FloatArray
 
 Statistic = Callable[[FloatArray], float]
 
@@ -181,3 +181,14 @@ def _checked(values: ArrayLike, confidence: float) -> FloatArray:
     if np.isnan(sample).any():
         raise ConfigError("interval: expected numbers, got NaN; leave such values out, or count failures as infinity")
     return sample
+
+
+def checked_flags(failed: ArrayLike, n: int) -> BoolArray:
+    """`failed` as bool (n,); raises ConfigError for another length, and for what is not truth values.
+
+    A table whose column holds mixed objects gives ~True as -2, and the text "False" counts as true.
+    """
+    flags = np.asarray(failed)
+    if flags.shape != (n,) or (n and flags.dtype != np.bool_):
+        raise ConfigError(f"expected `failed` as bool ({n},), one a run, got {flags.dtype} of shape {flags.shape}")
+    return flags.astype(np.bool_)

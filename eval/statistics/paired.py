@@ -8,7 +8,13 @@ from numpy.typing import ArrayLike
 from scipy import stats
 
 from slamgym.errors import ConfigError
-from slamgym.eval.statistics.intervals import Interval, bootstrap_interval, check_confidence, median_interval
+from slamgym.eval.statistics.intervals import (
+    Interval,
+    bootstrap_interval,
+    check_confidence,
+    checked_flags,
+    median_interval,
+)
 from slamgym.types import BoolArray, FloatArray
 
 
@@ -113,10 +119,10 @@ def _checked(
     a: ArrayLike, b: ArrayLike, failed_a: ArrayLike, failed_b: ArrayLike
 ) -> tuple[FloatArray, FloatArray, BoolArray, BoolArray]:
     values = [np.asarray(x, dtype=np.float64) for x in (a, b)]
-    failed = [np.asarray(x, dtype=np.bool_) for x in (failed_a, failed_b)]
-    shapes = [x.shape for x in (*values, *failed)]
-    if len(shapes[0]) != 1 or not shapes[0][0] or len(set(shapes)) > 1:
-        raise ConfigError(f"pairs: expected four arrays (P,), one value a path, got shapes {shapes}")
+    shapes = [x.shape for x in values]
+    if len(shapes[0]) != 1 or not shapes[0][0] or shapes[0] != shapes[1]:
+        raise ConfigError(f"pairs: expected two arrays (P,), one value a path, got shapes {shapes}")
+    failed = [checked_flags(x, len(values[0])) for x in (failed_a, failed_b)]
     for name, x, lost in zip("ab", values, failed, strict=True):
         if not (np.isfinite(x) & (x >= 0) | lost).all():
             raise ConfigError(

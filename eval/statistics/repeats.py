@@ -7,6 +7,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from slamgym.errors import ConfigError
+from slamgym.eval.statistics.intervals import checked_flags
 
 
 def median_over_repeats(
@@ -20,13 +21,14 @@ def median_over_repeats(
     `failures`.
 
     failed: bool (rows,), which runs failed, such as `~table["success"]`. A run without a finite value in one of the
-    columns has failed in any case. Raises ConfigError for a column that the table lacks.
+    columns has failed in any case. Raises ConfigError for a column that the table lacks or that
+    is added, and flags that are not bool.
     """
     _check_columns(table, [*by, *columns])
     errors = table[list(columns)].astype(np.float64)
     failures = ~np.isfinite(errors.to_numpy()).all(axis=1)
     if failed is not None:
-        failures = failures | np.asarray(failed, dtype=np.bool_)
+        failures = failures | checked_flags(failed, len(table))
     errors[failures] = np.inf
     rows = errors.assign(runs=1, failures=failures.astype(np.int64))
     counts = {"runs": "sum", "failures": "sum"}
@@ -38,3 +40,5 @@ def _check_columns(table: pd.DataFrame, names: Sequence[str]) -> None:
     missing = [name for name in names if name not in table]
     if missing:
         raise ConfigError(f"table: expected the columns {missing}, got {list(table.columns)}")
+    if taken := {"runs", "failures"} & set(names):
+        raise ConfigError(f"table: expected other columns than {sorted(taken)}, which are added: rename them")

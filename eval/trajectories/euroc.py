@@ -4,15 +4,9 @@ from functools import partial
 from pathlib import Path
 
 from slamgym.eval.trajectories.poses import FilePoses
-from slamgym.eval.trajectories.text import (
-    ParsedLine,
-    columns,
-    first_data_line,
-    numbers,
-    read_table,
-    whole_ns,
-    wrong_columns,
-)
+from slamgym.eval.trajectories.stamp_words import whole_ns
+from slamgym.eval.trajectories.text import ParsedLine, first_data_line, read_table
+from slamgym.eval.trajectories.words import columns, numbers, wrong_columns
 
 _COLUMNS = "timestamp,x,y,z,qw,qx,qy,qz"
 

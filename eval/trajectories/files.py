@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,38 +10,22 @@ from slamgym.errors import ConfigError, TrajectoryError, unknown_word
 from slamgym.eval.trajectories.euroc import euroc_poses
 from slamgym.eval.trajectories.kitti import kitti_poses
 from slamgym.eval.trajectories.poses import FilePoses, to_trajectory
-from slamgym.eval.trajectories.text import first_data_line, format_of, shorten
+from slamgym.eval.trajectories.stamps import read_stamps
+from slamgym.eval.trajectories.text import first_data_line
 from slamgym.eval.trajectories.trajectory import Trajectory
 from slamgym.eval.trajectories.tum import tum_poses
-
-_Reader = Callable[[Path, Path | None], FilePoses]
-
-
-def _with_own_stamps(read: Callable[[Path], FilePoses]) -> _Reader:
-    def reader(path: Path, times: Path | None) -> FilePoses:
-        if times is not None:
-            raise TrajectoryError(f"{path}: expected no times, its format has stamps; got {times}: leave it out")
-        return read(path)
-
-    return reader
+from slamgym.eval.trajectories.words import format_of, quoted
 
 
-def _with_times(read: Callable[[Path, Path], FilePoses]) -> _Reader:
-    def reader(path: Path, times: Path | None) -> FilePoses:
-        if times is None:
-            raise TrajectoryError(
-                f"{path}: expected a file of times too, its format has no stamps; give times=, a file with the seconds "
-                "of each pose (KITTI's times.txt)"
-            )
-        return read(path, times)
-
-    return reader
+class _Format(NamedTuple):
+    read: Callable[[Path], FilePoses]
+    has_stamps: bool
 
 
-FORMATS: dict[str, _Reader] = {
-    "tum": _with_own_stamps(tum_poses),
-    "kitti": _with_times(kitti_poses),
-    "euroc": _with_own_stamps(euroc_poses),
+FORMATS = {
+    "tum": _Format(tum_poses, has_stamps=True),
+    "kitti": _Format(kitti_poses, has_stamps=False),
+    "euroc": _Format(euroc_poses, has_stamps=True),
 }
 
 
@@ -52,7 +37,7 @@ def read_trajectory(
     repair: bool = False,
     allow_empty: bool = False,
 ) -> Trajectory:
-    """Read a trajectory file; metres and, in the trajectory, nanoseconds.
+    """Read a trajectory file of at most 5,000,000 lines; metres and, in the trajectory, nanoseconds.
 
     format: one of FORMATS, None to tell it by the content (`guess_format`).
         "tum": `timestamp tx ty tz qx qy qz qw` a line, seconds.
@@ -61,7 +46,8 @@ def read_trajectory(
     repair: NaN, infinity, quaternions of length 0 or more than 1 % off 1, unsorted and repeated stamps, and
         nanoseconds in a TUM file are errors; with `repair` there is one TrajectoryWarning for each kind instead, and
         such poses are left out (not finite, length 0), normalised, sorted, or taken as nanoseconds; of repeated stamps
-        the last pose is kept, as the TUM tools do.
+        the last pose is kept, as the TUM tools do. That comes after the leaving out: a valid pose stays even where one
+        that is not finite follows at the same stamp.
     allow_empty: a file without a pose, which a SLAM that never initialised writes, is an empty trajectory.
     Raises TrajectoryError with file and line, ConfigError for an unknown format.
     """
@@ -70,14 +56,22 @@ def read_trajectory(
         raise ConfigError(unknown_word("trajectory format", format, FORMATS))
     if allow_empty and first_data_line(path) is None:
         return Trajectory(np.empty(0, np.int64), np.empty((0, 4, 4)))
-    poses = FORMATS[format or guess_format(path)](path, None if times is None else Path(times))
+    read, has_stamps = FORMATS[format or guess_format(path)]
+    if has_stamps and times is not None:
+        raise TrajectoryError(f"{path}: expected no times, its format has stamps; got {times}: leave it out")
+    if not has_stamps and times is None:
+        raise TrajectoryError(
+            f"{path}: expected times too, its format has no stamps; got none: name the file with the seconds of its "
+            "poses, such as KITTI's times.txt"
+        )
+    poses = read(path) if times is None else _with_times(read(path), Path(times))
     return to_trajectory(poses, repair=repair, allow_empty=allow_empty)
 
 
 def guess_format(path: Path | str) -> str:
     """One of FORMATS, by the first data line: commas, 8 or 12 columns; the file's name does not count.
 
-    Raises TrajectoryError when it looks like none of them.
+    Raises TrajectoryError when there is none, or it looks like none of them.
     """
     line = first_data_line(Path(path))
     if line is None:
@@ -85,6 +79,24 @@ def guess_format(path: Path | str) -> str:
     if (name := format_of(line)) is None:
         raise TrajectoryError(
             f"{path}: expected 8 columns (tum), 12 (kitti) or commas (euroc), got {len(line.split())} columns: "
-            f"{shorten(line)}; give format=, one of {', '.join(FORMATS)}"
+            f"{quoted(line)}; is it a trajectory? Write it as one of {', '.join(FORMATS)}"
         )
     return name
+
+
+def needs_times(path: Path | str) -> bool:
+    """Whether `read_trajectory` needs `times` for the file: its guessed format has no stamps of its own.
+
+    False for a file without a pose. Raises TrajectoryError when the file looks like no format.
+    """
+    return first_data_line(Path(path)) is not None and not FORMATS[guess_format(path)].has_stamps
+
+
+def _with_times(poses: FilePoses, times: Path) -> FilePoses:
+    stamps_ns = read_stamps(times)
+    if len(stamps_ns) != len(poses.lines):
+        raise TrajectoryError(
+            f"{poses.path}: expected a pose for each of the {len(stamps_ns)} stamps of {times}, "
+            f"got {len(poses.lines)}: are both from the same run?"
+        )
+    return poses._replace(stamps_ns=stamps_ns)

@@ -6,30 +6,24 @@ import numpy as np
 
 from slamgym.errors import TrajectoryError
 from slamgym.eval.trajectories.poses import FilePoses
-from slamgym.eval.trajectories.stamps import read_stamps
-from slamgym.eval.trajectories.text import ParsedLine, Table, columns, numbers, read_table, wrong_columns
+from slamgym.eval.trajectories.text import ParsedLine, Table, read_table
 from slamgym.eval.trajectories.trajectory import are_rigid
+from slamgym.eval.trajectories.words import columns, numbers, wrong_columns
 from slamgym.geometry import quaternion_xyzw
 from slamgym.types import FloatArray
 
 _TOLERANCE = 1e-3
 
 
-def kitti_poses(path: Path, times: Path) -> FilePoses:
-    """The poses of a file with 12 numbers a line, the upper 3x4 of T_world_cam by rows, metres; `times`: its stamps.
+def kitti_poses(path: Path) -> FilePoses:
+    """The poses of a file with 12 numbers a line, the upper 3x4 of T_world_cam by rows, metres; without stamps.
 
     Rotation parts orthonormal within 1e-3 are turned into the nearest rotation; others raise TrajectoryError.
     """
     table = read_table(path, _parse)
-    stamps_ns = read_stamps(times)
-    if len(stamps_ns) != len(table.lines):
-        raise TrajectoryError(
-            f"{path}: expected a pose for each of the {len(stamps_ns)} stamps of {times}, "
-            f"got {len(table.lines)}: are both from the same run?"
-        )
     T = np.tile(np.eye(4), (len(table.lines), 1, 1))
     T[:, :3] = table.values.reshape(-1, 3, 4)
-    return FilePoses(path, table.lines, stamps_ns, T[:, :3, 3], _quaternions(path, table, T))
+    return FilePoses(path, table.lines, table.stamps_ns, T[:, :3, 3], _quaternions(path, table, T))
 
 
 def _parse(text: str) -> ParsedLine:

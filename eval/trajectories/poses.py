@@ -17,6 +17,7 @@ _NORM_TOLERANCE = 0.01
 class FilePoses(NamedTuple):
     """The poses of a file, unchecked: a line number, stamp, position (3,) in metres and quaternion (4,) xyzw each.
 
+    The stamps are empty until they are known, for a format that has none.
     in_ns: the stamps were nanoseconds in a file whose format wants seconds.
     """
 
@@ -54,7 +55,8 @@ def to_trajectory(poses: FilePoses, *, repair: bool, allow_empty: bool = False) 
     """The trajectory of a file's poses.
 
     Stamps in nanoseconds for seconds, NaN and infinity, quaternions of length 0 or more than 1 % off 1, unsorted and
-    repeated stamps raise a TrajectoryError; with `repair` they are repaired, with one TrajectoryWarning for each kind.
+    repeated stamps raise a TrajectoryError; with `repair` they are repaired, with one TrajectoryWarning for each kind:
+    poses left out first, so that of poses at one stamp the last usable one stays.
     No pose raises TrajectoryError unless `allow_empty`.
     """
     poses = _with_usable_numbers(poses, repair)
@@ -96,6 +98,6 @@ def _tell(poses: FilePoses, bad: BoolArray, fault: _Fault, repair: bool) -> None
     line = poses.lines[np.argmax(bad)]
     problem = f"{poses.path}:{line}: expected {fault.expected}, got {fault.got}"
     if not repair:
-        raise TrajectoryError(f"{problem}; correct the file or read it with repair=True ({fault.repair})")
+        raise TrajectoryError(f"{problem}; correct the file, or have it repaired ({fault.repair})")
     message = f"{problem} ({np.count_nonzero(bad)} of {len(poses.lines)} lines); {fault.repair}"
     warnings.warn(message, TrajectoryWarning, stacklevel=5)

@@ -1,11 +1,14 @@
 """Lists of stamps: the frames that a SLAM was fed, or the times of a trajectory without any of its own."""
 
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
 
-from slamgym.errors import TrajectoryError
-from slamgym.eval.trajectories.text import ParsedLine, columns, read_table, seconds_to_ns
+from slamgym.errors import OutputError, TrajectoryError
+from slamgym.eval.trajectories.stamp_words import seconds_to_ns
+from slamgym.eval.trajectories.text import ParsedLine, read_table
+from slamgym.eval.trajectories.words import columns
 from slamgym.types import IntArray
 
 
@@ -26,3 +29,12 @@ def read_stamps(path: Path | str) -> IntArray:
 
 def _parse(text: str) -> ParsedLine:
     return [seconds_to_ns(columns(text.split(maxsplit=1)[0])[0])], []
+
+
+def write_stamps(path: Path | str, stamps_ns: IntArray) -> None:
+    """Write stamps (N,), a line of seconds each, exact, as `read_stamps` reads them; raises OutputError."""
+    lines = (f"{Decimal(stamp_ns).scaleb(-9):.9f}\n" for stamp_ns in stamps_ns.tolist())
+    try:
+        Path(path).write_text("".join(lines), encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"cannot write the stamps {path}: {error.strerror}") from error

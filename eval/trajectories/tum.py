@@ -9,20 +9,10 @@ import numpy as np
 
 from slamgym.errors import OutputError
 from slamgym.eval.trajectories.poses import FilePoses, to_trajectory
-from slamgym.eval.trajectories.text import (
-    MAX_NANOSECONDS,
-    SMALLEST_NANOSECONDS,
-    ParsedLine,
-    columns,
-    first_data_line,
-    numbers,
-    read_table,
-    seconds_to_ns,
-    shorten,
-    whole_ns,
-    wrong_columns,
-)
+from slamgym.eval.trajectories.stamp_words import MAX_NANOSECONDS, SMALLEST_NANOSECONDS, seconds_to_ns, whole_ns
+from slamgym.eval.trajectories.text import ParsedLine, first_data_line, read_table
 from slamgym.eval.trajectories.trajectory import Trajectory
+from slamgym.eval.trajectories.words import columns, numbers, quoted, wrong_columns
 from slamgym.geometry import quaternion_xyzw
 
 _COLUMNS = "timestamp tx ty tz qx qy qz qw"
@@ -76,5 +66,5 @@ def _starts_in_ns(path: Path) -> bool:
 def _large_ns(word: str) -> int:
     stamp_ns = whole_ns(word)
     if abs(stamp_ns) < SMALLEST_NANOSECONDS:
-        raise ValueError(f"expected a stamp in nanoseconds like the first one of the file, got {shorten(word)}")
+        raise ValueError(f"expected a stamp in nanoseconds like the first one of the file, got {quoted(word)}")
     return stamp_ns

@@ -1,32 +1,58 @@
 """The command line: parses, prints, exits. Nothing else in slamgym prints or exits."""
 
+import os
 import sys
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any
 
 import tyro
 
-from slamgym.cli.eval import Eval, evaluate_files
-from slamgym.cli.run import Run, run
 from slamgym.cli.terminal import notes, say
 from slamgym.errors import SlamgymError
 
 EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130
+EXIT_CLOSED_PIPE = 141
 
-COMMANDS: dict[str, tuple[type[Any], Callable[[Any], None]]] = {"run": (Run, run), "eval": (Eval, evaluate_files)}
-"""Name -> the options of a command, and what it does with them."""
+COMMANDS = {"run": "slamgym.cli.run:Run", "eval": "slamgym.cli.eval:Eval"}
+"""Name -> the options of a command, a class whose `__call__` carries it out."""
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Entry point of the command `slamgym`. Exits with 0, 2 on bad input, or 130 after Ctrl-C."""
-    actions = dict(COMMANDS.values())
-    parsers: dict[str, Callable[..., Any]] = {name: options for name, (options, _) in COMMANDS.items()}
+    """Entry point of the command `slamgym`. Exits with 0, 2 on bad input, 130 after Ctrl-C, 141 on a closed pipe."""
+    arguments = sys.argv[1:] if arguments is None else arguments
     try:
-        options = tyro.extras.subcommand_cli_from_dict(parsers, prog="slamgym", args=arguments)
-        actions[type(options)](options)
+        _parsed(arguments)()
+        sys.stdout.flush()
     except SlamgymError as error:
         say(notes, f"slamgym: {error}", style="red")
         sys.exit(EXIT_BAD_INPUT)
+    except BrokenPipeError:
+        _forget_output()
+        sys.exit(EXIT_CLOSED_PIPE)
+    except OSError as error:
+        _forget_output()
+        say(notes, f"slamgym: cannot print the results: {error.strerror}", style="red")
+        sys.exit(EXIT_BAD_INPUT)
     except KeyboardInterrupt:
         sys.exit(EXIT_INTERRUPTED)
+
+
+def _forget_output() -> None:
+    """What is left to be written would fail again when Python exits."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _parsed(arguments: list[str]) -> Callable[[], None]:
+    """The command that the arguments name; only its own module is loaded, since `eval` needs no simulator."""
+    wanted = [name for name in COMMANDS if arguments[:1] == [name]] or list(COMMANDS)
+    parsers: dict[str, Callable[..., Any]] = {name: _options(COMMANDS[name]) for name in wanted}
+    command: Callable[[], None] = tyro.extras.subcommand_cli_from_dict(parsers, prog="slamgym", args=arguments)
+    return command
+
+
+def _options(target: str) -> type[Any]:
+    module, _, name = target.partition(":")
+    options: type[Any] = getattr(import_module(module), name)
+    return options

@@ -1,25 +1,24 @@
 """`slamgym eval`: trajectory files against the truth."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import pandas as pd
 import tyro
+from rich.console import Console
 
 from slamgym.cli.options import option_group
-from slamgym.cli.terminal import notes, results, say, told_warnings
+from slamgym.cli.terminal import notes, results, say, told_warnings, working
 from slamgym.errors import ConfigError, OutputError, TrajectoryError
-from slamgym.eval.evaluation import EvalParams, Evaluation, evaluate
+from slamgym.eval.evaluation import EvalParams, Evaluation, evaluate_at, prepare
 from slamgym.eval.plots import evaluation_plots, save_figure
-from slamgym.eval.plots.names import shorten
+from slamgym.eval.plots.names import printable, shorten
 from slamgym.eval.summary import CORRECT_ROT_DEG, CORRECT_TRANS_M, without_nan
-from slamgym.eval.trajectories import Trajectory, read_stamps, read_trajectory
-from slamgym.eval.trajectories.text import first_data_line, format_of
-from slamgym.report_table import PERCENT, figures_table
-from slamgym.types import IntArray
+from slamgym.eval.trajectories import Trajectory, needs_times, read_stamps, read_trajectory
+from slamgym.tables import PERCENT, figures_table
 
 COLUMNS: dict[str, tuple[str, str]] = {
     "estimate": ("name", "{}"),
@@ -29,12 +28,16 @@ COLUMNS: dict[str, tuple[str, str]] = {
     "cor-\nrect": ("correct_rate", PERCENT),
     "poses": ("matched", "{}"),
     "ATE\nm": ("ate_rmse_m", "{:.4f}"),
+    "held\nm": ("ate_held_rmse_m", "{:.4f}"),
     "ATE\n°": ("ate_rot_rmse_deg", "{:.2f}"),
     "RPE\n1 s m": ("rpe_second_trans_rmse_m", "{:.4f}"),
 }
 """Heading -> key of the row, and its format. ATE never stands without completion."""
 
-LONGEST_NAME = 20
+SCALE_COLUMN = {"scale": ("scale", "{:.3g}")}
+LONGEST_NAME = 18
+WIDTH = 100
+"""Columns that the table may take; a narrower terminal breaks its lines, but no figure is cut."""
 
 EvalOptions = option_group(EvalParams)
 
@@ -60,62 +63,92 @@ class Eval:
     csv: Annotated[bool, tyro.conf.arg(help="print comma separated values instead of the table")] = False
     plots: Annotated[Path | None, tyro.conf.arg(help="folder to write pictures to")] = None
 
+    def __call__(self) -> None:
+        params = EvalParams.checked(vars(self.params))
+        self._check()
+        with working("reading the files"), told_warnings():
+            truth = self._read(self.groundtruth)
+            frames_ns = None if self.frames is None else read_stamps(self.frames)
+            estimates = {path: self._read(path, allow_empty=True) for path in self.estimates}
+            reference = prepare(truth, params, frames_ns)
+        evaluations = {}
+        for name, (path, estimate) in zip(_names(self.estimates), estimates.items(), strict=True):
+            with working(f"evaluating {name}"), told_warnings(path):
+                try:
+                    evaluations[name] = evaluate_at(reference, estimate, params)
+                except TrajectoryError as error:
+                    raise TrajectoryError(f"{path}: {error}") from None
+        files = {"groundtruth": str(self.groundtruth), "frames_file": None if self.frames is None else str(self.frames)}
+        rows = [
+            {"estimate": str(path), **files, **params.model_dump(), **evaluation.summary}
+            for path, evaluation in zip(estimates, evaluations.values(), strict=True)
+        ]
+        self._print(rows, list(evaluations))
+        if self.plots is not None:
+            _write_plots(self.plots, evaluations)
 
-def evaluate_files(options: Eval) -> None:
-    """`slamgym eval`."""
-    params = EvalParams.checked(vars(options.params))
-    _check(options)
-    if options.times and not any(_has_no_stamps(path) for path in (options.groundtruth, *options.estimates)):
-        raise ConfigError("expected --times only with KITTI files, got files that have stamps: leave it out")
-    with notes.status("reading the files"), told_warnings():
-        truth = _read(options, options.groundtruth)
-        frames_ns = None if options.frames is None else read_stamps(options.frames)
-        estimates = {path: _read(options, path, allow_empty=True) for path in options.estimates}
-    evaluations = {}
-    for name, (path, estimate) in zip(_names(options.estimates), estimates.items(), strict=True):
-        with notes.status(f"evaluating {name}"), told_warnings(path):
-            evaluations[name] = _evaluate(path, truth, estimate, params, frames_ns)
-    rows = [
-        {"estimate": str(path), "groundtruth": str(options.groundtruth), **params.model_dump(), **evaluation.summary}
-        for path, evaluation in zip(estimates, evaluations.values(), strict=True)
-    ]
-    _print(options, rows, list(evaluations))
-    if options.plots is not None:
-        _write_plots(options.plots, evaluations)
+    def _check(self) -> None:
+        if not self.estimates:
+            raise ConfigError("expected at least one estimate, got none: slamgym eval GROUNDTRUTH ESTIMATE...")
+        if len(set(self.estimates)) < len(self.estimates):
+            raise ConfigError("expected every estimate once, got one of them twice: name each file once")
+        if self.json and self.csv:
+            raise ConfigError("expected one of --json and --csv, got both: run it twice")
+        if self.plots is not None and not _nearest_existing(self.plots).is_dir():
+            raise OutputError(
+                f"cannot make the folder {self.plots} for pictures: {_nearest_existing(self.plots)} is a file"
+            )
+        if self.times and not any(needs_times(path) for path in (self.groundtruth, *self.estimates)):
+            raise ConfigError("expected --times only with KITTI files, got files that have stamps: leave it out")
+
+    def _read(self, path: Path, *, allow_empty: bool = False) -> Trajectory:
+        # A SLAM that never initialised writes a file without a pose: for an estimate that is a result.
+        times = self.times if needs_times(path) else None
+        return read_trajectory(path, times=times, repair=not self.strict, allow_empty=allow_empty)
+
+    def _print(self, rows: list[dict[str, Any]], names: Iterable[str]) -> None:
+        if self.json:
+            print(json.dumps(without_nan(rows), indent=2, allow_nan=False))
+        elif self.csv:
+            table = pd.DataFrame(rows).drop(columns="losses")
+            print(table.to_csv(index=False), end="")
+        else:
+            columns = COLUMNS | (SCALE_COLUMN if rows[0]["alignment"] == "sim3" else {})
+            shown = [_shown(row, name) for row, name in zip(rows, names, strict=True)]
+            Console(width=max(results.width, WIDTH)).print(figures_table(columns, shown))
+            for line in self._caption(rows):
+                say(results, line, style="dim")
+
+    def _caption(self, rows: Sequence[Mapping[str, Any]]) -> list[str]:
+        """What the numbers mean: a number without its policy flatters."""
+        n = rows[0]["frames"]
+        if self.frames is not None:
+            complete = f"of the {n} frames of {printable(self.frames.name)}, those with a pose"
+            held = ""
+        else:
+            gaps = sorted({row["max_gap_s"] for row in rows})
+            short = (
+                f"{gaps[0]:.2g} s" if len(gaps) == 1 else f"{gaps[0]:.2g} to {gaps[-1]:.2g} s, by the estimate's rate"
+            )
+            complete = f"of the time of the {n} true poses, that with an estimated pose or in a gap of up to {short}"
+            held = " (give the frames)"
+        return [
+            f"complete: {complete}.",
+            f"correct: share of the time with a pose within {CORRECT_TRANS_M:g} m and {CORRECT_ROT_DEG:g}°.",
+            f"ATE: RMSE over the poses after {rows[0]['alignment']} alignment, associated as {rows[0]['association']} "
+            f"does within {rows[0]['max_difference_s']:g} s.",
+            f"held: ATE over all frames, the last pose held where there is none{held}.",
+        ]
 
 
-def _check(options: Eval) -> None:
-    if not options.estimates:
-        raise ConfigError("expected at least one estimate, got none: slamgym eval GROUNDTRUTH ESTIMATE...")
-    if len(set(options.estimates)) < len(options.estimates):
-        raise ConfigError("expected every estimate once, got one of them twice: name each file once")
-    if options.json and options.csv:
-        raise ConfigError("expected one of --json and --csv, got both: run it twice")
-    if options.plots is not None:
-        try:
-            options.plots.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise OutputError(f"cannot make the folder {options.plots} for pictures: {error.strerror}") from None
+def _nearest_existing(path: Path) -> Path:
+    return next(parent for parent in (path, *path.resolve().parents) if parent.exists())
 
 
-def _read(options: Eval, path: Path, *, allow_empty: bool = False) -> Trajectory:
-    # A SLAM that never initialised writes a file without a pose: for an estimate that is a result.
-    times = options.times if _has_no_stamps(path) else None
-    return read_trajectory(path, times=times, repair=not options.strict, allow_empty=allow_empty)
-
-
-def _has_no_stamps(path: Path) -> bool:
-    line = first_data_line(path)
-    return line is not None and format_of(line) == "kitti"
-
-
-def _evaluate(
-    path: Path, truth: Trajectory, estimate: Trajectory, params: EvalParams, frames_ns: IntArray | None
-) -> Evaluation:
-    try:
-        return evaluate(truth, estimate, params, frames_ns)
-    except TrajectoryError as error:
-        raise TrajectoryError(f"{path}: {error}") from None
+def _shown(row: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """A row of the table; who was never tracked cannot get lost."""
+    losses = "-" if row["status"] == "init_failed" else row["loss_count"]
+    return {**row, "name": shorten(printable(name), LONGEST_NAME), "loss_count": losses}
 
 
 def _names(paths: Sequence[Path]) -> list[str]:
@@ -124,32 +157,11 @@ def _names(paths: Sequence[Path]) -> list[str]:
     return names if len(set(names)) == len(names) else [str(path) for path in paths]
 
 
-def _print(options: Eval, rows: list[dict[str, Any]], names: Sequence[str]) -> None:
-    if options.json:
-        print(json.dumps(without_nan(rows), indent=2, allow_nan=False))
-    elif options.csv:
-        table = pd.DataFrame(rows).drop(columns="losses")
-        print(table.to_csv(index=False), end="")
-    else:
-        short = [{"name": shorten(name, LONGEST_NAME), **row} for name, row in zip(names, rows, strict=True)]
-        results.print(figures_table(COLUMNS, short))
-        say(results, _caption(options, rows[0]), style="dim")
-
-
-def _caption(options: Eval, row: Mapping[str, Any]) -> str:
-    """What the numbers mean: a number without its policy flatters."""
-    if options.frames is not None:
-        complete = f"of the {row['frames']} frames of {options.frames.name}, those with a pose"
-    else:
-        complete = f"of the {row['frames']} true poses, those with a pose or in a gap of up to {row['max_gap_s']:g} s"
-    return (
-        f"complete: {complete}. correct: share of the time within {CORRECT_TRANS_M:g} m and {CORRECT_ROT_DEG:g}°.\n"
-        f"ATE: RMSE over the poses after {row['alignment']} alignment; association as {row['association']} does it, "
-        f"within {row['max_difference_s']:g} s."
-    )
-
-
 def _write_plots(folder: Path, evaluations: Mapping[str, Evaluation]) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"cannot make the folder {folder} for pictures: {error.strerror}") from None
     for name, figure in evaluation_plots(evaluations).items():
         svg, png = save_figure(figure, folder / name)
         say(notes, f"picture: {png}, {svg.name}")

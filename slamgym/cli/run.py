@@ -39,35 +39,33 @@ class Run:
         MAX_EPISODE_STEPS
     )
 
-
-def run(options: Run) -> None:
-    """`slamgym run`."""
-    if options.agent not in AGENTS:
-        raise ConfigError(unknown_word("agent", options.agent, AGENTS))
-    if options.seed < 0 or options.max_episode_steps < 1:
-        raise ConfigError(
-            f"expected a seed of at least 0 and max_episode_steps of at least 1, got {options.seed} and "
-            f"{options.max_episode_steps}"
-        )
-    keywords: Mapping[str, Any] = {**vars(options.drive), **vars(options.slam)}
-    env = gym.make("HomeRobotSLAM-v0", max_episode_steps=options.max_episode_steps, **keywords)
-    check_free(options.out)
-    try:
-        with metres_progress() as progress:
-            task = progress.add_task("loading", total=None)
-            episode = run_episode(
-                env,
-                AGENTS[options.agent](),
-                options.seed,
-                on_step=lambda done_m, path_m: progress.update(
-                    task, description="driving", completed=done_m, total=path_m
-                ),
+    def __call__(self) -> None:
+        if self.agent not in AGENTS:
+            raise ConfigError(unknown_word("agent", self.agent, AGENTS))
+        if self.seed < 0 or self.max_episode_steps < 1:
+            raise ConfigError(
+                f"expected a seed of at least 0 and max_episode_steps of at least 1, got {self.seed} and "
+                f"{self.max_episode_steps}"
             )
-    except EpisodeInterrupted as interrupted:
-        say(notes, f"interrupted; what was driven is in {write_run(interrupted.episode, options.out)}")
-        raise
-    finally:
-        env.close()
-    folder = write_run(episode, options.out)
-    results.print(episode_table([episode]))
-    say(results, f"run folder: {folder}")
+        keywords: Mapping[str, Any] = {**vars(self.drive), **vars(self.slam)}
+        env = gym.make("HomeRobotSLAM-v0", max_episode_steps=self.max_episode_steps, **keywords)
+        check_free(self.out)
+        try:
+            with metres_progress() as progress:
+                task = progress.add_task("loading", total=None)
+                episode = run_episode(
+                    env,
+                    AGENTS[self.agent](),
+                    self.seed,
+                    on_step=lambda done_m, path_m: progress.update(
+                        task, description="driving", completed=done_m, total=path_m
+                    ),
+                )
+        except EpisodeInterrupted as interrupted:
+            say(notes, f"interrupted; what was driven is in {write_run(interrupted.episode, self.out)}")
+            raise
+        finally:
+            env.close()
+        folder = write_run(episode, self.out)
+        results.print(episode_table([episode]))
+        say(results, f"run folder: {folder}")

@@ -8,16 +8,24 @@ from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.status import Status
+from rich.text import Text
 
 from slamgym.errors import TrajectoryWarning
+from slamgym.eval.plots.names import printable
 
 results = Console()
 notes = Console(stderr=True)
 
 
 def say(console: Console, text: str, style: str | None = None) -> None:
-    """Print as it is: a path may hold what would be markup."""
-    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+    """Print one line as it is: a path may hold what would be markup, or would steer the terminal."""
+    console.print(printable(text), style=style, markup=False, highlight=False, emoji=False, soft_wrap=True)
+
+
+def working(text: str) -> Status:
+    """A spinner beside the text while something takes its time."""
+    return notes.status(Text(printable(text)))
 
 
 @contextmanager

@@ -18,13 +18,13 @@ FAR_APART = [
     "drift_trans_percent", "drift_rot_deg_per_m",
 ]  # fmt: skip
 ROBUSTNESS = {
-    "status", "success", "ate_held_rmse_m", "completion", "completion_time", "completion_distance", "correct_rate",
-    "relocalization_score", "f1_area", "frames_fed", "frames_tracked", "maps", "loops_closed", "losses", "loss_count",
-    "losses_per_minute", "losses_per_metre", "mean_time_between_losses_s", "mean_distance_between_losses_m",
-    "mean_time_to_relocalize_s", "time_to_first_loss_s", "time_to_initialize_s", "tracked_points_median",
-    "lockstep_overruns",
+    "status", "success", "ate_held_rmse_m", "completion", "completion_of_time", "completion_of_distance",
+    "correct_rate", "drift_segments", "relocalized_count", "f1_area", "frames_fed", "frames_tracked", "maps",
+    "loops_closed", "losses", "loss_count", "losses_per_minute", "losses_per_metre", "mean_time_between_losses_s",
+    "mean_distance_between_losses_m", "mean_time_to_relocalize_s", "time_to_first_loss_s", "time_to_initialize_s",
+    "tracked_points_median", "lockstep_overruns",
 }  # fmt: skip
-MOTION = set(SequenceAttributes._fields) - {"frames"}
+MOTION = set(SequenceAttributes._fields) - {"frames", "duration_s", "path_length_m"}
 KEYS = {*ACCURACY, *FAR_APART, *ROBUSTNESS, *MOTION}
 
 
@@ -104,3 +104,31 @@ def test_a_crash_leaves_the_online_accuracy(make_record):
     assert summary["ate_online_rmse_m"] == pytest.approx(0.05, rel=0.2)
     assert (summary["status"], summary["completion"]) == ("crashed", 0.8)
     assert not np.isnan(summary["time_to_first_loss_s"])
+
+
+def test_a_crash_is_judged_by_the_emitted_poses(make_record):
+    summary = summarize_slam(make_record("..000000", final="........", outcome="crashed"))
+    assert is_nan(summary, "ate_rmse_m")
+    assert (summary["completion"], summary["f1_area"]) == (0.75, pytest.approx(2 * 6 / (6 + 8)))
+    # Two of eight frames at the start are held at the first pose: 0.2 and 0.1 m away from it.
+    assert summary["correct_rate"] == pytest.approx(5 / 7)
+    assert summary["ate_held_rmse_m"] == pytest.approx(np.sqrt((0.2**2 + 0.1**2) / 8), rel=0.01)
+
+
+def test_poses_in_other_maps_are_estimates_without_a_truth(make_record):
+    summary = summarize_slam(make_record("000000x111", events={7: SlamEvent.NEW_MAP}))
+    assert summary["f1_area"] == pytest.approx(2 * 6 / (9 + 10))
+
+
+def test_success_needs_half_of_the_frames(make_record):
+    assert summarize_slam(make_record("....0000"))["success"]
+    assert not summarize_slam(make_record(".....000"))["success"]
+    assert not summarize_slam(make_record("00000000", final=".....000"))["success"]
+
+
+def test_a_drive_that_ends_before_its_merge_is_judged_online_by_one_map(make_record):
+    """Two online maps that were one in the end: the larger of them, each with an origin of its own."""
+    record = make_record("000x1111xx", final="000.1111..", events={4: SlamEvent.NEW_MAP}, online_error_m=0.1)
+    merged = make_record("000x1111xx", final="111.1111..", online_error_m=0.1)
+    assert summarize_slam(merged)["ate_online_rmse_m"] == summarize_slam(record)["ate_online_rmse_m"]
+    assert 0.01 < summarize_slam(merged)["ate_online_rmse_m"] < 0.2

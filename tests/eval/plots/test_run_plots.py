@@ -94,6 +94,8 @@ def test_the_cumulative_curve_counts_failures_in_the_total(texts_of):
 def test_a_cumulative_curve_of_frames_says_so(texts_of):
     texts = texts_of(plot_cumulative({"a": [0.4, NAN, 0.1]}, counted="frames"))
     assert {"share of all frames", "a: 1 of 3 frames failed"} <= set(texts)
+    figure = plot_cumulative({"a": [0.4, NAN, 0.1]}, counted="frames", failed="not tracked")
+    assert figure.axes[0].get_lines()[0].get_label() == "a: 1 of 3 frames not tracked"
 
 
 def test_labels_at_the_ends_keep_apart_and_on_the_axis():
@@ -102,6 +104,8 @@ def test_labels_at_the_ends_keep_apart_and_on_the_axis():
     assert heights.min() >= 0.0
     assert heights.max() <= 1.0
     assert _apart([0.2, 0.8]) == pytest.approx([0.2, 0.8])
+    # 21 labels have room for steps of 1/20 only.
+    assert _apart([1.0] * 21) == pytest.approx(np.linspace(0.0, 1.0, 21), abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -124,6 +128,18 @@ def test_boxes_show_each_run_once_and_count_them_below(texts_of):
     assert [len(line.get_xdata()) for line in points] == [2, 1, 0, 2]
     texts = texts_of(figure)
     assert {"speed (m/s)", "n = 3", "1 failed", "n = 2", "2 failed"} <= set(texts)
+
+
+def test_names_that_do_not_fit_below_their_boxes_stand_upright():
+    few, many = (plot_boxes({f"a rather long name {i}": [0.1, 0.2] for i in range(n)}) for n in (2, 20))
+    (label, *_), (upright, *_) = (figure.axes[0].get_xticklabels() for figure in (few, many))
+    assert (label.get_rotation(), upright.get_rotation()) == (0.0, 90.0)
+    assert label.get_text() == upright.get_text() == "a rather long name 0\nn = 2\n0 failed"
+    assert many.get_figheight() > few.get_figheight()
+
+
+def test_what_failed_means_is_said_above_the_bars(texts_of):
+    assert "failed: lost" in texts_of(plot_sorted_bars({"a": [0.1, NAN]}, failed_when="lost"))
 
 
 def test_a_scatter_plot_says_what_is_known(texts_of):

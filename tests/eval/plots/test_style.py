@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from slamgym.errors import OutputError
-from slamgym.eval.plots import save_figure
-from slamgym.eval.plots.names import MAX_LETTERS, percent, plain, plain_names
+from slamgym.eval.plots import plot_cumulative, save_figure
+from slamgym.eval.plots.names import MAX_LETTERS, percent, plain, plain_names, printable
 from slamgym.eval.plots.style import COLOURS, DASHES, LOST, MARKERS, TRUTH, legend_below, look, new_figure
 
 
@@ -72,6 +72,11 @@ def test_long_names_lose_their_middle(name, shown):
     assert plain(name, 7) == shown
 
 
+def test_a_printable_name_is_one_line_of_its_own_letters():
+    assert printable(" a\tb\nc  $ d ") == "a b c $ d"
+    assert printable("\x1b[31mred\udcff") == "\ufffd[31mred\ufffd"
+
+
 def test_long_names_that_look_the_same_are_numbered():
     assert plain_names(["abcXdef", "abcYdef", "short"], 5) == ["ab…ef #1", "ab…ef #2", "short"]
 
@@ -92,6 +97,13 @@ def test_a_legend_shows_every_name_below_the_axes(hostile_names, texts_of):
     (legend,) = figure.legends
     assert legend.get_window_extent().y1 < axes.get_window_extent().y0
     assert legend.get_window_extent().x0 >= 0.0
+
+
+@pytest.mark.parametrize("n", [1, 20])
+def test_a_legend_of_many_names_leaves_the_axes_their_height(n):
+    figure = plot_cumulative({f"system {i} with a long enough name": [0.1, 0.2] for i in range(n)})
+    figure.draw_without_rendering()
+    assert figure.axes[0].get_position().height * figure.get_figheight() == pytest.approx(4.4, abs=0.3)
 
 
 def test_the_same_figure_gives_the_same_bytes(tmp_path):

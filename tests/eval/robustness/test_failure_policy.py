@@ -71,6 +71,7 @@ def test_the_arrays_stay_as_they_were():
         ("drop", {"penalty": 1.0}, "`penalty` with the policy 'penalise' and only there"),
         ("penalise", {}, "`penalty` with the policy 'penalise' and only there, got None"),
         ("penalise", {"penalty": 0.0}, "above 0"),
+        ("penalise", {"penalty": 0.05}, "worse than every run that did not fail"),
         ("penalise", {"penalty": np.nan}, "above 0"),
         ("penalise", {"penalty": np.inf, "statistic": "mean"}, "finite for a mean"),
         ("penalise", {"penalty": 1.0, "held": HELD}, "`held` values with the policy 'hold_last_pose' and only there"),

@@ -25,7 +25,7 @@ def test_rates_and_means_of_known_losses():
     losses = [loss(1.0, "relocalized"), loss(4.0, "relocalized"), loss(25.0, "never")]
     rates = failure_rates(losses, Exposure(120, 30, 90, 24))
     assert (rates.loss_count, rates.losses_per_minute, rates.losses_per_metre) == pytest.approx((3, 1.5, 0.1))
-    assert (rates.mean_time_between_s, rates.mean_distance_between_m) == pytest.approx((30, 8))
+    assert (rates.mean_time_between_losses_s, rates.mean_distance_between_losses_m) == pytest.approx((30, 8))
     assert (rates.relocalized_count, rates.mean_time_to_relocalize_s) == pytest.approx((2, 2.5))
 
 
@@ -51,7 +51,7 @@ def test_a_drive_of_no_time_has_no_rate():
 def test_a_robot_that_only_turned_has_no_rate_by_distance():
     rates = failure_rates([], Exposure(60, 0, 60, 0))
     assert (rates.losses_per_minute, rates.losses_per_metre) == (0, NAN)
-    assert (rates.mean_time_between_s, rates.mean_distance_between_m) == (np.inf, NAN)
+    assert (rates.mean_time_between_losses_s, rates.mean_distance_between_losses_m) == (np.inf, NAN)
 
 
 def test_two_recorded_runs_together(make_record):
@@ -61,7 +61,7 @@ def test_two_recorded_runs_together(make_record):
     losses = [event for record in records for event in find_losses(record)]
     rates = failure_rates(losses, total_exposure(drives))
     assert (rates.loss_count, rates.losses_per_minute) == (2, pytest.approx(2 / (0.7 / 60)))
-    assert (rates.mean_time_between_s, rates.mean_distance_between_m) == pytest.approx((0.1, 0.1))
+    assert (rates.mean_time_between_losses_s, rates.mean_distance_between_losses_m) == pytest.approx((0.1, 0.1))
     assert (rates.relocalized_count, rates.mean_time_to_relocalize_s) == (1, pytest.approx(0.1))
 
 

@@ -170,8 +170,10 @@ def test_the_verdict():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (([], []), r"got shapes \(0,\) and \(0,\)"),
-        (([1.0, 2.0], [True]), r"got shapes \(2,\) and \(1,\)"),
+        (([], []), r"got shape \(0,\)"),
+        (([1.0, 2.0], [True]), r"bool \(2,\), one a run, got bool of shape \(1,\)"),
+        (([1.0, 2.0], ["False", "True"]), r"expected `failed` as bool"),
+        (([1.0, 2.0], [-1, -2]), r"expected `failed` as bool"),
         (([1.0, np.nan], [True, False]), "expected finite levels"),
         (([1.0, 2.0], [True, False], [1]), "one group for each of 2 runs"),
         (([1.0, 2.0], [True, False], None, 1.0), "confidence"),

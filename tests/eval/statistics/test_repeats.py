@@ -53,3 +53,12 @@ def test_an_empty_table_has_no_path():
 def test_a_missing_column_is_named():
     with pytest.raises(ConfigError, match=r"expected the columns \['ate'\], got \['path'\]"):
         median_over_repeats(table(path=[1]), ["path"], ["ate"])
+
+
+def test_what_would_be_overwritten_or_is_no_flag_is_refused():
+    runs = table(path=[1, 1], ate=[0.1, 0.2], runs=[3, 4])
+    with pytest.raises(ConfigError, match=r"other columns than \['runs'\]"):
+        median_over_repeats(runs, ["path"], ["runs"])
+    for failed in ([True], [-1, -2], ["False", "False"]):
+        with pytest.raises(ConfigError, match="expected `failed` as bool"):
+            median_over_repeats(runs, ["path"], ["ate"], failed=failed)

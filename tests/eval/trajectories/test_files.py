@@ -3,7 +3,15 @@ import os
 import pytest
 
 from slamgym.errors import ConfigError, TrajectoryError, TrajectoryWarning
-from slamgym.eval.trajectories import FORMATS, guess_format, read_stamps, read_trajectory, read_tum, text
+from slamgym.eval.trajectories import (
+    FORMATS,
+    guess_format,
+    needs_times,
+    read_stamps,
+    read_trajectory,
+    read_tum,
+    text,
+)
 
 FILES = {
     "tum": "# timestamp tx ty tz qx qy qz qw\n1 1 2 3 0 0 0 1\n",
@@ -26,13 +34,44 @@ def test_a_file_of_another_format_is_told_so(write, format_, read_as):
     if format_ == read_as:
         return
     times = write("1\n", "times.txt") if read_as == "kitti" else None
-    with pytest.raises(TrajectoryError, match=f"this looks like {format_}: use format='{format_}'"):
+    with pytest.raises(TrajectoryError, match=rf"is it in the format {format_}, or is the line cut off\?"):
         read_trajectory(write(FILES[format_]), read_as, times=times)
 
 
 def test_a_file_of_no_known_format(write):
-    with pytest.raises(TrajectoryError, match=r"8 columns \(tum\), 12 \(kitti\) .* got 3 columns: '1 2 3'; .* euroc"):
+    with pytest.raises(
+        TrajectoryError,
+        match=r"8 columns \(tum\), 12 \(kitti\) .* got 3 columns: '1 2 3'; .* Write it as one of tum, kitti, euroc",
+    ):
         guess_format(write("# nothing\n1 2 3\n"))
+
+
+@pytest.mark.parametrize(("format_", "needed"), [("tum", False), ("kitti", True), ("euroc", False)])
+def test_only_a_file_without_stamps_needs_times(write, format_, needed):
+    assert needs_times(write(FILES[format_])) is needed
+
+
+def test_whether_a_file_without_a_pose_or_of_no_format_needs_times(write, tmp_path):
+    assert needs_times(write("# timestamp tx ty tz qx qy qz qw\n")) is False
+    with pytest.raises(TrajectoryError, match="got 3 columns"):
+        needs_times(write("1 2 3\n"))
+    with pytest.raises(TrajectoryError, match="No such file"):
+        needs_times(tmp_path / "none")
+
+
+def test_the_format_is_told_by_the_head_of_a_file_alone(tmp_path):
+    # Far down there is a byte that no text has: whoever gets there says so.
+    (tmp_path / "t.txt").write_bytes(FILES["tum"].encode() + b"# much more\n" * 100_000 + b"\xff")
+    assert guess_format(tmp_path / "t.txt") == "tum"
+    with pytest.raises(TrajectoryError, match="got a binary file"):
+        read_trajectory(tmp_path / "t.txt")
+
+
+@pytest.mark.parametrize("read", [read_trajectory, read_stamps, guess_format, needs_times])
+def test_a_line_without_end_is_not_read_to_its_end(write, read):
+    path = write("# head\n" + "1 " * (1 << 20))
+    with pytest.raises(TrajectoryError, match=r"t\.txt:2: expected lines below 1,048,576 characters, got a longer one"):
+        read(path)
 
 
 def test_an_unknown_format(write):
@@ -96,6 +135,13 @@ def test_too_many_lines_are_refused_before_they_are_parsed(tmp_path, monkeypatch
         read_tum(tmp_path / "t.txt")
     (tmp_path / "t.txt").write_bytes((end.join(f"{k} 1 2 3 0 0 0 1" for k in range(3)) + end).encode())
     assert len(read_tum(tmp_path / "t.txt")) == 3
+
+
+def test_five_million_lines_are_the_limit(tmp_path):
+    # The pose on line 1 is one that no reader takes: a longer limit would lead to it.
+    (tmp_path / "t.txt").write_bytes(b"1 2 3 4 5 6 7 no\n" + b"\n" * 5_000_000)
+    with pytest.raises(TrajectoryError, match="expected at most 5,000,000 lines, got more"):
+        read_trajectory(tmp_path / "t.txt")
 
 
 def test_the_stamps_of_a_list_of_frames(write):

@@ -139,6 +139,17 @@ def test_a_fault_is_refused_or_repaired_with_one_warning(write, text, message, l
     assert dict(zip((trajectory.stamps_ns // 10**9).tolist(), trajectory.positions[:, 0].tolist(), strict=True)) == left
 
 
+@pytest.mark.parametrize("unusable", ["1 nan 0 0 0 0 0 1", "1 inf 0 0 0 0 0 1", "1 8 0 0 0 0 0 0"])
+def test_a_valid_pose_stays_where_an_unusable_one_follows_at_its_stamp(write, unusable):
+    path = write(f"1 7 0 0 0 0 0 1\n{unusable}\n")
+    with pytest.raises(TrajectoryError, match=r"t\.txt:2: .*; correct the file, or have it repaired \(pose left out"):
+        read_tum(path)
+    # One warning: what is left comes once.
+    with pytest.warns(TrajectoryWarning, match=r"t\.txt:2: .*pose left out") as warned:
+        assert read_tum(path, repair=True).positions[:, 0].tolist() == [7.0]
+    assert len(warned) == 1
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_norm_off_by_less_than_a_percent_is_normalised_without_a_word(write):
     # 0.6, 0.8 and 0.606, 0.808 are the same rotation: half the angle has the sine 0.6, so cos = 1 - 2 * 0.36 = 0.28.
