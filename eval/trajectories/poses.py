@@ -37,6 +37,10 @@ class FilePoses(NamedTuple):
         )
 
 
+_MAX_POSITION_M = 1e9
+_SHORTEST_STEP_NS = 50_000
+
+
 class _Fault(NamedTuple):
     expected: str
     got: str
@@ -45,6 +49,7 @@ class _Fault(NamedTuple):
 
 _IN_NS = _Fault("stamps in seconds", "stamps in nanoseconds", "taken as nanoseconds")
 _NOT_FINITE = _Fault("finite numbers", "NaN or infinity", "pose left out as not tracked")
+_TOO_FAR = _Fault("positions within 1e9 m", "one farther away", "pose left out as not tracked")
 _NO_ROTATION = _Fault("a rotation as unit quaternion", "one of length 0", "pose left out as not tracked")
 _WRONG_NORM = _Fault("a rotation as unit quaternion", "one whose length is off by more than 1 %", "normalised")
 _UNSORTED = _Fault("stamps in increasing order", "one before that of the pose above", "sorted")
@@ -54,16 +59,27 @@ _REPEATED = _Fault("every stamp once", "one that comes again", "last pose of the
 def to_trajectory(poses: FilePoses, *, repair: bool, allow_empty: bool = False) -> Trajectory:
     """The trajectory of a file's poses.
 
-    Stamps in nanoseconds for seconds, NaN and infinity, quaternions of length 0 or more than 1 % off 1, unsorted and
-    repeated stamps raise a TrajectoryError; with `repair` they are repaired, with one TrajectoryWarning for each kind:
-    poses left out first, so that of poses at one stamp the last usable one stays.
+    Stamps in nanoseconds for seconds, NaN and infinity, positions beyond 1e9 m, quaternions of length 0 or more than
+    1 % off 1, unsorted and repeated stamps raise a TrajectoryError; with `repair` they are repaired, with one
+    TrajectoryWarning for each kind: poses left out first, so that of poses at one stamp the last usable one stays.
     No pose raises TrajectoryError unless `allow_empty`.
     """
     poses = _with_usable_numbers(poses, repair)
     poses = _in_order(poses, repair)
     if not len(poses.lines) and not allow_empty:
         raise TrajectoryError(f"{poses.path}: expected lines with poses, got no pose at all: was it ever tracked?")
+    _check_unit(poses)
     return Trajectory(poses.stamps_ns, from_quaternion(poses.positions, poses.quaternions))
+
+
+def _check_unit(poses: FilePoses) -> None:
+    """Nanoseconds are told by their size, which microseconds have too; but no camera takes 20,000 frames a second."""
+    steps_ns = np.diff(poses.stamps_ns)
+    if poses.in_ns and len(steps_ns) and np.median(steps_ns) < _SHORTEST_STEP_NS:
+        raise TrajectoryError(
+            f"{poses.path}: expected stamps in seconds or nanoseconds, got some {np.median(steps_ns):.0f} apart: are "
+            "they in microseconds? Write them in seconds"
+        )
 
 
 def _with_usable_numbers(poses: FilePoses, repair: bool) -> FilePoses:
@@ -71,6 +87,9 @@ def _with_usable_numbers(poses: FilePoses, repair: bool) -> FilePoses:
     finite = np.asarray(np.isfinite(np.hstack([poses.positions, poses.quaternions])).all(axis=1))
     _tell(poses, ~finite, _NOT_FINITE, repair)
     poses = poses.take(finite)
+    far = np.asarray((np.abs(poses.positions) > _MAX_POSITION_M).any(axis=1))
+    _tell(poses, far, _TOO_FAR, repair)
+    poses = poses.take(~far)
     # Divided by the largest component first: squares of very large or small numbers leave the range of floats.
     size = np.abs(poses.quaternions).max(axis=1, initial=0.0)
     _tell(poses, size == 0, _NO_ROTATION, repair)

@@ -6,17 +6,18 @@ from pathlib import Path
 import numpy as np
 
 from slamgym.errors import OutputError, TrajectoryError
-from slamgym.eval.trajectories.stamp_words import seconds_to_ns
+from slamgym.eval.trajectories.stamp_words import seconds_to_ns, whole_ns
 from slamgym.eval.trajectories.text import ParsedLine, read_table
 from slamgym.eval.trajectories.words import columns
 from slamgym.types import IntArray
 
 
 def read_stamps(path: Path | str) -> IntArray:
-    """Stamps int64 (N,), ns, strictly increasing, from the first column, in seconds, of a file.
+    """Stamps int64 (N,), ns, strictly increasing, from the first column of a file.
 
-    Such as TUM's rgb.txt and associations.txt or KITTI's times.txt; words after the first are ignored, '#' starts a
-    comment. Raises TrajectoryError with file and line.
+    In seconds, such as TUM's rgb.txt and associations.txt or KITTI's times.txt; in nanoseconds before a comma, such as
+    the data.csv of EuRoC's cameras. What follows the first column is ignored, '#' starts a comment. Raises
+    TrajectoryError with file and line.
     """
     table = read_table(Path(path), _parse)
     if not len(table.lines):
@@ -28,6 +29,8 @@ def read_stamps(path: Path | str) -> IntArray:
 
 
 def _parse(text: str) -> ParsedLine:
+    if "," in text:
+        return [whole_ns(columns(text, ",")[0])], []
     return [seconds_to_ns(columns(text.split(maxsplit=1)[0])[0])], []
 
 

@@ -130,7 +130,7 @@ class Eval:
             short = (
                 f"{gaps[0]:.2g} s" if len(gaps) == 1 else f"{gaps[0]:.2g} to {gaps[-1]:.2g} s, by the estimate's rate"
             )
-            complete = f"of the time of the {n} true poses, that with an estimated pose or in a gap of up to {short}"
+            complete = f"of the {n} true poses, holes filled, those with an estimated one or in a gap of up to {short}"
             held = " (give the frames)"
         return [
             f"complete: {complete}.",

@@ -149,6 +149,11 @@ def test_the_stamps_of_a_list_of_frames(write):
     assert read_stamps(path).tolist() == [1_305_031_102_175_304_000, 1_305_031_102_211_214_000]
 
 
+def test_a_list_of_euroc_frames(write):
+    path = write("#timestamp [ns],filename\n1403636579763555584,a.png\n1403636579813555456,b.png\n", "data.csv")
+    assert read_stamps(path).tolist() == [1403636579763555584, 1403636579813555456]
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [

@@ -185,3 +185,22 @@ def test_real_ground_truth_with_repeated_stamps(shared_data):
     words = [line.split()[0] for line in path.read_text().splitlines() if not line.startswith("#")]
     assert len(trajectory) == len(set(words)) < len(words)
     assert f"{len(words) - len(set(words))} of {len(words)}" in str(warned[0].message)
+
+
+def test_microseconds_are_not_taken_for_nanoseconds(write):
+    path = write("".join(f"{1_403_636_580_000_000 + 33_333 * k} {POSE}\n" for k in range(5)))
+    with pytest.raises(TrajectoryError, match="in nanoseconds"):
+        read_tum(path)
+    with (
+        pytest.raises(TrajectoryError, match="33333 apart: are they in microseconds"),
+        pytest.warns(TrajectoryWarning, match="taken as nanoseconds"),
+    ):
+        read_tum(path, repair=True)
+
+
+def test_positions_out_of_this_world_are_left_out_or_refused(write):
+    path = write(f"1 {POSE}\n2 1e200 0 0 0 0 0 1\n3 {POSE}\n")
+    with pytest.raises(TrajectoryError, match=r"t.txt:2: expected positions within 1e9 m"):
+        read_tum(path)
+    with pytest.warns(TrajectoryWarning, match="left out as not tracked"):
+        assert read_tum(path, repair=True).stamps_ns.tolist() == [10**9, 3 * 10**9]
