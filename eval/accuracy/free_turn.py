@@ -17,8 +17,8 @@ def free_turn(ref_T: FloatArray, est_T: FloatArray) -> FloatArray:
     """Rotation (3, 3) that takes the orientations of the aligned estimate (N, 4, 4) closest to the true ones (N, 4, 4)
     about the axes that the positions leave open; the identity where they settle all of it.
 
-    An alignment of positions turns the estimate about a straight path in whatever way fits their noise: a drive of 1 m
-    that was tracked to 2 mm and 0.1 degrees came out with 4 degrees of roll. Compare orientations after this turn.
+    An alignment of positions turns the estimate about a straight path in whatever way fits their noise, which may be
+    many degrees. Compare orientations after this turn.
     """
     if len(ref_T) < 2:
         return np.eye(3)
