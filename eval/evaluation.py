@@ -127,7 +127,7 @@ def prepare(ref: Trajectory, params: EvalParams, frames_ns: IntArray | None = No
         whole = fill_holes(ref, MAX_GAP_S)
         reference = Reference(ref, whole, np.isin(whole.stamps_ns, ref.stamps_ns), False)
     elif params.max_gap_s is None:
-        reference = _at_frames(ref, frames_ns, params)
+        reference = _at_frames(ref, np.asarray(frames_ns, dtype=np.int64), params)
     else:
         raise ConfigError(f"expected no max_gap_s with frames, which tell every gap; got {params.max_gap_s:g} s")
     _warn(doubts.of_holes(ref, find_holes(ref, MAX_GAP_S), int((~reference.real).sum()), len(reference.whole)))

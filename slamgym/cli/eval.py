@@ -66,26 +66,32 @@ class Eval:
     def __call__(self) -> None:
         params = EvalParams.checked(vars(self.params))
         self._check()
+        evaluations = self._evaluate(params)
+        files = {"groundtruth": str(self.groundtruth), "frames_file": None if self.frames is None else str(self.frames)}
+        rows = [
+            {"estimate": str(path), **files, **params.model_dump(), **evaluation.summary}
+            for path, evaluation in zip(self.estimates, evaluations.values(), strict=True)
+        ]
+        self._print(rows, list(evaluations))
+        if self.plots is not None:
+            _write_plots(self.plots, evaluations)
+
+    def _evaluate(self, params: EvalParams) -> dict[str, Evaluation]:
+        """By the name that an estimate goes by."""
         with working("reading the files"), told_warnings():
             truth = self._read(self.groundtruth)
             frames_ns = None if self.frames is None else read_stamps(self.frames)
-            estimates = {path: self._read(path, allow_empty=True) for path in self.estimates}
+            # A SLAM that never initialised writes a file without a pose: for an estimate that is a result.
+            estimates = [self._read(path, allow_empty=True) for path in self.estimates]
             reference = prepare(truth, params, frames_ns)
         evaluations = {}
-        for name, (path, estimate) in zip(_names(self.estimates), estimates.items(), strict=True):
+        for name, path, estimate in zip(_names(self.estimates), self.estimates, estimates, strict=True):
             with working(f"evaluating {name}"), told_warnings(path):
                 try:
                     evaluations[name] = evaluate_at(reference, estimate, params)
                 except TrajectoryError as error:
                     raise TrajectoryError(f"{path}: {error}") from None
-        files = {"groundtruth": str(self.groundtruth), "frames_file": None if self.frames is None else str(self.frames)}
-        rows = [
-            {"estimate": str(path), **files, **params.model_dump(), **evaluation.summary}
-            for path, evaluation in zip(estimates, evaluations.values(), strict=True)
-        ]
-        self._print(rows, list(evaluations))
-        if self.plots is not None:
-            _write_plots(self.plots, evaluations)
+        return evaluations
 
     def _check(self) -> None:
         if not self.estimates:
@@ -102,7 +108,6 @@ class Eval:
             raise ConfigError("expected --times only with KITTI files, got files that have stamps: leave it out")
 
     def _read(self, path: Path, *, allow_empty: bool = False) -> Trajectory:
-        # A SLAM that never initialised writes a file without a pose: for an estimate that is a result.
         times = self.times if needs_times(path) else None
         return read_trajectory(path, times=times, repair=not self.strict, allow_empty=allow_empty)
 

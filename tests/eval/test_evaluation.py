@@ -59,6 +59,7 @@ def test_without_frames_only_long_gaps_are_losses():
     assert (summary["duration_s"], summary["distance_m"]) == pytest.approx((9.9, 9.9))
 
 
+@pytest.mark.filterwarnings("ignore:the truth begins")
 def test_without_frames_the_rate_of_the_estimate_tells_what_is_a_gap():
     """6 poses in 0.05 s, then none for 0.94 s, ten times: lost for most of the time, though never for 1 s."""
     truth = Trajectory(np.arange(1000, dtype=np.int64) * 10_000_000, drive(1000).T)
@@ -248,6 +249,7 @@ def test_on_a_straight_path_the_orientations_settle_the_roll():
     assert summary["correct_rate"] == 1.0
 
 
+@pytest.mark.filterwarnings("ignore:orientations are off")
 def test_a_stuck_estimate_is_a_result_for_every_alignment():
     truth = drive(50)
     stuck = Trajectory(truth.stamps_ns, np.tile(np.eye(4), (50, 1, 1)))
