@@ -49,11 +49,11 @@ class Eval:
     Example: slamgym eval groundtruth.txt orbslam3.txt other.txt --frames rgb.txt --plots out/plots
     """
 
-    groundtruth: tyro.conf.Positional[Path]
-    """True trajectory."""
-    estimates: tyro.conf.Positional[tuple[Path, ...]]
-    """Estimated trajectories."""
-    params: tyro.conf.OmitArgPrefixes[EvalOptions]
+    groundtruth: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="GROUNDTRUTH", help="true trajectory")]
+    estimates: Annotated[
+        tyro.conf.Positional[tuple[Path, ...]], tyro.conf.arg(metavar="ESTIMATE...", help="estimated trajectories")
+    ]
+    comparison: tyro.conf.OmitArgPrefixes[EvalOptions]
     frames: Annotated[
         Path | None, tyro.conf.arg(help="list of the frames the SLAM was given, seconds in its first column (rgb.txt)")
     ] = None
@@ -64,7 +64,7 @@ class Eval:
     plots: Annotated[Path | None, tyro.conf.arg(help="folder to write pictures to")] = None
 
     def __call__(self) -> None:
-        params = EvalParams.checked(vars(self.params))
+        params = EvalParams.checked(vars(self.comparison))
         self._check()
         evaluations = self._evaluate(params)
         files = {"groundtruth": str(self.groundtruth), "frames_file": None if self.frames is None else str(self.frames)}
