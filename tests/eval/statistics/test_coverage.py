@@ -134,6 +134,18 @@ def share_with_gap(draw, draws, seed=0):
     return np.mean([failure_threshold(draw(rng)).found for _ in range(draws)])
 
 
+@pytest.fixture
+def tell(capsys):
+    """Print a share beside the dots: the docs state it."""
+
+    def tell_share(name, share):
+        with capsys.disabled():
+            print(f"\n{name}: {100 * share:.1f} %")  # noqa: T201
+        return share
+
+    return tell_share
+
+
 @pytest.mark.parametrize("name", INTERVALS)
 def test_intervals_hold_the_truth_roughly(name):
     # 100 draws at 95 % give fewer than 87 hits with a probability below 0.1 %.
@@ -142,8 +154,8 @@ def test_intervals_hold_the_truth_roughly(name):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", INTERVALS)
-def test_intervals_hold_the_truth(name):
-    share = coverage(INTERVALS[name], 1000, seed=1)
+def test_intervals_hold_the_truth(name, tell):
+    share = tell(f"interval of {name} holds the truth", coverage(INTERVALS[name], 1000, seed=1))
     assert 0.92 <= share <= 0.98
 
 
@@ -162,8 +174,8 @@ def test_two_groups_are_told_apart_mostly(good, bad):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("good", "bad"), [(8, 4), (15, 6), (40, 20), (90, 10)])
-def test_two_groups_are_told_apart(good, bad):
-    share = share_with_gap(lambda rng: two_groups(rng, good, bad), 1000)
+def test_two_groups_are_told_apart(good, bad, tell):
+    share = tell(f"gap found, {good} + {bad}", share_with_gap(lambda rng: two_groups(rng, good, bad), 1000))
     assert share >= 0.97
 
 
@@ -177,8 +189,8 @@ def test_one_group_is_rarely_taken_for_two_roughly(name, n):
 @pytest.mark.slow
 @pytest.mark.parametrize("n", [12, 30, 100])
 @pytest.mark.parametrize("name", ONE_GROUP)
-def test_one_group_is_rarely_taken_for_two(name, n):
-    share = share_with_gap(lambda rng: ONE_GROUP[name](rng, n), 1000)
+def test_one_group_is_rarely_taken_for_two(name, n, tell):
+    share = tell(f"gap seen in one group, {name}, n = {n}", share_with_gap(lambda rng: ONE_GROUP[name](rng, n), 1000))
     # Few values that are spread evenly over the logarithms are the hardest; 1,000 draws are known to 0.7 %.
     assert share <= (0.07 if name == "log-uniform" else 0.05)
 
