@@ -1,7 +1,10 @@
 """What makes the figures of an estimate mean something else than they seem to: one sentence each."""
 
+import warnings
+
 import numpy as np
 
+from slamgym.errors import TrajectoryWarning
 from slamgym.eval.accuracy import absolute_errors
 from slamgym.eval.trajectories import Trajectory
 from slamgym.types import FloatArray, IntArray
@@ -9,6 +12,12 @@ from slamgym.types import FloatArray, IntArray
 OTHER_BODY_DEG = 30.0
 OTHER_STAMPS_S = 1e-3
 DENSER = 2.0
+
+
+def tell(sentences: list[str]) -> None:
+    """Each as a TrajectoryWarning."""
+    for sentence in sentences:
+        warnings.warn(sentence, TrajectoryWarning, stacklevel=4)
 
 
 def of_the_order(truth: Trajectory, est: Trajectory) -> list[str]:

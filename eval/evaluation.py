@@ -1,15 +1,12 @@
 """One estimate against the truth, both poses over time: accuracy and robustness of anybody's trajectories."""
 
-import warnings
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from pydantic import Field
 
-from slamgym.checked_params import Params
-from slamgym.errors import ConfigError, TrajectoryError, TrajectoryWarning
 from slamgym.eval import doubts
+from slamgym.eval.reference import EvalParams, Reference, max_gap_s, prepare
 from slamgym.eval.robustness import covered_frames, find_gaps, held_ate, is_success
 from slamgym.eval.summary import (
     MOTION_RATES,
@@ -23,53 +20,10 @@ from slamgym.eval.summary import (
 from slamgym.eval.trajectories import (
     Trajectory,
     associate,
-    fill_holes,
-    find_holes,
-    interpolate,
     match_stamps,
     step_sizes,
 )
 from slamgym.types import BoolArray, IntArray, LossEvent, Summary
-
-MAX_GAP_S = 1.0
-USUAL_STEPS = 5
-"""Where the frames are not known, gaps of up to so many usual steps of the estimate count as tracked, but none of more
-than MAX_GAP_S."""
-
-
-class EvalParams(Params):
-    """How an estimate is compared with the truth."""
-
-    alignment: Literal["se3", "sim3", "first_pose", "none"] = Field(
-        "se3", description="of the estimate to the truth; sim3 also corrects the scale, which hides an error of RGB-D"
-    )
-    association: Literal["tum", "evo"] = Field("tum", description="by whose rule poses belong together")
-    max_difference_s: float = Field(0.02, gt=0, le=3600, description="longest time between two such poses, s")
-    max_gap_s: float | None = Field(
-        None,
-        ge=0,
-        le=3600,
-        description=f"longest time without a pose that counts as tracked, s; None: {USUAL_STEPS} usual steps of the "
-        f"estimate, 0.1 to {MAX_GAP_S:g} s; not with frames, which tell",
-    )
-
-    @property
-    def max_difference_ns(self) -> int:
-        return round(self.max_difference_s * 1e9)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Reference:
-    """A sequence to judge estimates of, made by `prepare`.
-
-    truth: the true poses. whole: true poses at the N frames, interpolated where the truth has none. real: bool (N,),
-    where it has one. frames_known: whether the frames were given.
-    """
-
-    truth: Trajectory
-    whole: Trajectory
-    real: BoolArray
-    frames_known: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,43 +73,16 @@ def evaluate(
     return evaluate_at(prepare(ref, params, frames_ns), est, params)
 
 
-def prepare(ref: Trajectory, params: EvalParams, frames_ns: IntArray | None = None) -> Reference:
-    """The truth for `evaluate_at`; arguments, errors and warnings as for `evaluate`."""
-    if not len(ref):
-        raise TrajectoryError("expected a truth with poses, got none")
-    if frames_ns is None:
-        whole = fill_holes(ref, MAX_GAP_S)
-        reference = Reference(ref, whole, np.isin(whole.stamps_ns, ref.stamps_ns), False)
-    elif params.max_gap_s is None:
-        reference = _at_frames(ref, np.asarray(frames_ns, dtype=np.int64), params)
-    else:
-        raise ConfigError(f"expected no max_gap_s with frames, which tell every gap; got {params.max_gap_s:g} s")
-    _warn(doubts.of_holes(ref, find_holes(ref, MAX_GAP_S), int((~reference.real).sum()), len(reference.whole)))
-    return reference
-
-
-def _at_frames(ref: Trajectory, frames_ns: IntArray, params: EvalParams) -> Reference:
-    whole = Trajectory(frames_ns, interpolate(ref, frames_ns))
-    real = np.zeros(len(whole), dtype=np.bool_)
-    real[match_stamps(ref.stamps_ns, frames_ns, params.max_difference_ns)[1]] = True
-    if not real.any():
-        raise TrajectoryError(
-            f"expected frames with a true pose within {params.max_difference_s:g} s, got {len(frames_ns)} without: "
-            "are frames and truth of the same sequence?"
-        )
-    return Reference(ref, whole, real, True)
-
-
 def evaluate_at(reference: Reference, est: Trajectory, params: EvalParams) -> Evaluation:
     """`evaluate` against a sequence that `prepare` made ready with the same parameters."""
     whole = reference.whole
-    _warn(doubts.of_the_order(reference.truth, est) + doubts.of_repeated_poses(est))
+    doubts.tell(doubts.of_the_order(reference.truth, est) + doubts.of_repeated_poses(est))
     pairs = _pairs(reference.truth, est, params)
     compare = _at_given_frames if reference.frames_known else _at_true_poses
     compared = compare(reference, pairs, est, params)
     frames, judged, tracked = compared.frames, compared.judged, compared.tracked
     if judged.aligned:
-        _warn(doubts.of_orientations(judged.ref_T[judged.judged], judged.turned_T[judged.judged]))
+        doubts.tell(doubts.of_orientations(judged.ref_T[judged.judged], judged.turned_T[judged.judged]))
     real = reference.real | frames.judged
     losses = find_gaps(whole.stamps_ns, whole.T, tracked)
     n = int(judged.judged.sum())
@@ -216,7 +143,7 @@ def _at_given_frames(reference: Reference, pairs: _Pairs, est: Trajectory, param
     """A frame is tracked when it has a pose, whether or not the truth has one too."""
     whole = reference.whole
     frame_rows, est_rows = match_stamps(whole.stamps_ns, est.stamps_ns, _frame_bound_ns(whole, params))
-    _warn(doubts.of_stamps(whole.stamps_ns[frame_rows], est.stamps_ns[est_rows]))
+    doubts.tell(doubts.of_stamps(whole.stamps_ns[frame_rows], est.stamps_ns[est_rows]))
     tracked = np.zeros(len(whole), dtype=np.bool_)
     tracked[frame_rows] = True
     pair_of = np.full(len(est), -1)
@@ -233,10 +160,10 @@ def _at_true_poses(reference: Reference, pairs: _Pairs, est: Trajectory, params:
     judged, scale = align_frames(pairs.poses, params.alignment)
     rows = np.searchsorted(whole.stamps_ns, truth.stamps_ns)[pairs.rows]
     frames = _placed(whole, rows, judged, np.arange(len(rows)))
-    max_gap_s = _max_gap_s(truth, est, params)
-    _warn(doubts.of_the_ends(truth, est, max_gap_s))
-    tracked = frames.judged | covered_frames(whole.stamps_ns, est.stamps_ns, max_gap_s)
-    return _Compared(frames, judged, scale, tracked, max_gap_s)
+    longest_s = max_gap_s(truth, est, params)
+    doubts.tell(doubts.of_the_ends(truth, est, longest_s))
+    tracked = frames.judged | covered_frames(whole.stamps_ns, est.stamps_ns, longest_s)
+    return _Compared(frames, judged, scale, tracked, longest_s)
 
 
 def _placed(whole: Trajectory, rows: IntArray, pairs: FramePoses, chosen: IntArray) -> FramePoses:
@@ -250,18 +177,6 @@ def _frame_bound_ns(whole: Trajectory, params: EvalParams) -> int:
     """Half of the usual time between frames at most, so that a lost frame does not get its neighbour's pose."""
     steps_ns = np.diff(whole.stamps_ns)
     return min(params.max_difference_ns, int(np.median(steps_ns)) // 2) if len(steps_ns) else params.max_difference_ns
-
-
-def _max_gap_s(truth: Trajectory, est: Trajectory, params: EvalParams) -> float:
-    """What was asked for, or what the estimate's own rate tells, up to MAX_GAP_S; not below the truth's rate."""
-    est_s, true_s = (float(np.median(np.diff(t.stamps_ns))) * 1e-9 if len(t) > 1 else 0.0 for t in (est, truth))
-    wanted_s = min(MAX_GAP_S, max(0.1, USUAL_STEPS * est_s)) if params.max_gap_s is None else params.max_gap_s
-    return max(wanted_s, 2 * true_s)
-
-
-def _warn(sentences: list[str]) -> None:
-    for sentence in sentences:
-        warnings.warn(sentence, TrajectoryWarning, stacklevel=4)
 
 
 def _outcome(tracked: BoolArray, losses: list[LossEvent]) -> Summary:

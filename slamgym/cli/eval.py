@@ -13,9 +13,10 @@ from rich.console import Console
 from slamgym.cli.options import option_group
 from slamgym.cli.terminal import notes, results, say, told_warnings, working
 from slamgym.errors import ConfigError, OutputError, TrajectoryError
-from slamgym.eval.evaluation import EvalParams, Evaluation, evaluate_at, prepare
+from slamgym.eval.evaluation import Evaluation, evaluate_at
 from slamgym.eval.plots import evaluation_plots, save_figure
 from slamgym.eval.plots.names import printable, shorten
+from slamgym.eval.reference import EvalParams, prepare
 from slamgym.eval.summary import CORRECT_ROT_DEG, CORRECT_TRANS_M, without_nan
 from slamgym.eval.trajectories import Trajectory, needs_times, read_stamps, read_trajectory
 from slamgym.tables import PERCENT, figures_table

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from slamgym.errors import ConfigError, TrajectoryError, TrajectoryWarning
-from slamgym.eval.evaluation import EvalParams, evaluate
+from slamgym.eval import EvalParams, evaluate
 from slamgym.eval.summary import without_nan
 from slamgym.eval.trajectories import Trajectory
 from slamgym.geometry import inverse, mast_camera_pose

@@ -7,9 +7,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from slamgym.errors import ConfigError, TrajectoryWarning
-from slamgym.eval.evaluation import EvalParams, Evaluation, evaluate, evaluate_at, prepare
+from slamgym.eval.evaluation import Evaluation, evaluate, evaluate_at
 from slamgym.eval.plots import evaluation_plots
 from slamgym.eval.plots.evaluation import carried_errors_m, carried_poses
+from slamgym.eval.reference import EvalParams, prepare
 from slamgym.eval.summary import FramePoses
 from slamgym.eval.trajectories import Trajectory
 from slamgym.geometry import planar_pose
