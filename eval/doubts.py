@@ -5,9 +5,8 @@ import warnings
 import numpy as np
 
 from slamgym.errors import TrajectoryWarning
-from slamgym.eval.accuracy import absolute_errors
 from slamgym.eval.trajectories import Trajectory
-from slamgym.types import FloatArray, IntArray
+from slamgym.types import IntArray
 
 OTHER_BODY_DEG = 30.0
 OTHER_STAMPS_S = 1e-3
@@ -51,12 +50,9 @@ def of_repeated_poses(est: Trajectory) -> list[str]:
     return [f"{repeated} poses repeat the one before exactly and count as tracked: was the SLAM lost there?"]
 
 
-def of_orientations(ref_T: FloatArray, est_T: FloatArray) -> list[str]:
-    """Poses of another body, camera or IMU, have right positions and wrong orientations; aligned poses (M, 4, 4)."""
-    if not len(ref_T):
-        return []
-    median_deg = float(np.median(absolute_errors(ref_T, est_T)[1]))
-    if median_deg <= OTHER_BODY_DEG:
+def of_orientations(median_deg: float) -> list[str]:
+    """Poses of another body, camera or IMU, have right positions and wrong orientations; NaN when none is known."""
+    if not median_deg > OTHER_BODY_DEG:
         return []
     return [
         f"orientations are off by {median_deg:.0f} degrees at the median: are they those of another body (camera, IMU, "

@@ -49,7 +49,7 @@ def summarize_slam(record: SlamRecord) -> Summary:
         "status": status(record),
         "success": is_success(status(record), len(losses), tracking["completion"]),
         **accuracy_summary(align_frames(final, "se3")[0]),
-        "ate_online_rmse_m": _online_ate(record),
+        "ate_online_rmse_m": _online_ate(record, estimate.judged),
         "ate_held_rmse_m": held_ate(record.T_world_cam, estimate.est_T, estimate.judged).rmse,
         **tracking,
         **correctness_summary(align_frames(estimate, "se3")[0], int(ok.sum()), len(ok), frames_known=True),
@@ -65,10 +65,9 @@ def _frames(record: SlamRecord, T_map_cam: FloatArray, map_id: IntArray) -> Fram
     return FramePoses(record.stamps_ns, record.T_world_cam, T_map_cam, judged)
 
 
-def _online_ate(record: SlamRecord) -> float:
-    _, maps = estimate_by_frame(record)
+def _online_ate(record: SlamRecord, evaluated: BoolArray) -> float:
     # Maps that were merged in the end had origins of their own before: never align two of them together.
-    online = np.where(maps == most_frequent_map(maps), record.map_id, -1)
+    online = np.where(evaluated, record.map_id, -1)
     frames = (online == most_frequent_map(online)) & (online >= 0)
     return _ate_rmse(record.T_world_cam[frames], record.T_map_cam[frames])
 
@@ -85,9 +84,7 @@ def _counts(record: SlamRecord) -> Summary:
         "tracked_points_median": float(np.median(record.tracked_points[ok])) if ok.any() else np.nan,
         "maps": len(np.unique(record.map_id[ok])),
         "loops_closed": record.events.count(SlamEvent.LOOP_CLOSED),
-        "time_to_initialize_s": float(record.stamps_ns[np.argmax(ok)] - record.stamps_ns[0]) * 1e-9
-        if ok.any()
-        else np.nan,
+        "time_to_initialize_s": _time_to_first(record.stamps_ns, ok),
     }
 
 

@@ -17,12 +17,7 @@ from slamgym.eval.summary import (
     motion_summary,
     tracking_summary,
 )
-from slamgym.eval.trajectories import (
-    Trajectory,
-    associate,
-    match_stamps,
-    step_sizes,
-)
+from slamgym.eval.trajectories import Trajectory, associate, match_stamps, step_sizes
 from slamgym.types import BoolArray, IntArray, LossEvent, Summary
 
 
@@ -81,18 +76,17 @@ def evaluate_at(reference: Reference, est: Trajectory, params: EvalParams) -> Ev
     compare = _at_given_frames if reference.frames_known else _at_true_poses
     compared = compare(reference, pairs, est, params)
     frames, judged, tracked = compared.frames, compared.judged, compared.tracked
-    if judged.aligned:
-        doubts.tell(doubts.of_orientations(judged.ref_T[judged.judged], judged.turned_T[judged.judged]))
     real = reference.real | frames.judged
     losses = find_gaps(whole.stamps_ns, whole.T, tracked)
     n = int(judged.judged.sum())
+    accuracy = accuracy_summary(judged)
+    doubts.tell(doubts.of_orientations(accuracy["ate_rot_median_deg"]))
     summary = {
         **_outcome(tracked, losses),
-        **accuracy_summary(judged),
+        **accuracy,
         "scale": compared.scale,
         **tracking_summary(whole.stamps_ns, whole.T, tracked, losses),
         **correctness_summary(frames, n, int(real.sum()), frames_known=reference.frames_known),
-        "ate_held_rmse_m": held_ate(frames.ref_T[real], frames.est_T[real], frames.judged[real]).rmse,
         "time_to_initialize_s": _time_to_first(whole.stamps_ns, est.stamps_ns),
         "frames": len(whole) if reference.frames_known else len(reference.truth),
         "frames_without_truth": int((~real).sum()),
@@ -101,11 +95,13 @@ def evaluate_at(reference: Reference, est: Trajectory, params: EvalParams) -> Ev
         "max_gap_s": compared.max_gap_s,
         "duration_s": float(whole.stamps_ns[-1] - whole.stamps_ns[0]) * 1e-9,
         "distance_m": float(step_sizes(whole.T)[0].sum()),
-        **motion_summary(whole.stamps_ns, whole.T),
     }
-    if not reference.frames_known:
+    if reference.frames_known:
+        summary["ate_held_rmse_m"] = held_ate(frames.ref_T[real], frames.est_T[real], frames.judged[real]).rmse
+        summary |= motion_summary(whole.stamps_ns, whole.T)
+    else:
         # These need to know what a frame is: the truth has more poses than the camera took.
-        summary.update(dict.fromkeys(("f1_area", "ate_held_rmse_m", *MOTION_RATES), np.nan))
+        summary |= dict.fromkeys(("f1_area", "ate_held_rmse_m", *MOTION_RATES), np.nan)
     return Evaluation(frames, real, tracked, losses, summary)
 
 

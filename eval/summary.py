@@ -17,7 +17,7 @@ from slamgym.eval.accuracy import (
     segment_drift,
 )
 from slamgym.eval.robustness import (
-    completion,
+    completion_of,
     correct_poses,
     correct_rate,
     exposure,
@@ -153,14 +153,15 @@ def tracking_summary(
     - `losses_per_minute`, `losses_per_metre`, `mean_time_between_losses_s`, `mean_distance_between_losses_m`,
       `relocalized_count`, `mean_time_to_relocalize_s`: see `failure_rates`.
     """
-    shares = completion(stamps_ns, ref_T, tracked)
+    drive = exposure(stamps_ns, ref_T, tracked)
+    shares = completion_of(drive, tracked)
     return {
         "completion": shares.frames,
         "completion_of_time": shares.time,
         "completion_of_distance": shares.distance,
         "losses": [asdict(loss) for loss in losses],
         "time_to_first_loss_s": losses[0].start_s if losses else np.nan,
-        **failure_rates(losses, exposure(stamps_ns, ref_T, tracked))._asdict(),
+        **failure_rates(losses, drive)._asdict(),
     }
 
 

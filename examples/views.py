@@ -10,7 +10,7 @@ import tyro
 
 import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
-from slamgym.eval.plots.drive_map import plot_map
+from slamgym.eval.plots import plot_map
 from slamgym.rollout import run_episode
 
 VIEW_WIDTH, VIEW_HEIGHT = 320, 240

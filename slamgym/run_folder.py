@@ -20,7 +20,7 @@ import pandas as pd
 import yaml
 
 from slamgym.errors import OutputError
-from slamgym.eval.plots.drive_map import plot_map
+from slamgym.eval.plots import plot_map
 from slamgym.eval.robustness import estimate_by_frame, evaluated_frames
 from slamgym.eval.summary import without_nan
 from slamgym.eval.trajectories import Trajectory, write_stamps, write_tum

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+IndexPair = tuple[IntArray, IntArray]
 
 
 class TrackingState(IntEnum):

@@ -1,6 +1,7 @@
 import csv
 import io
 import json
+import os
 import subprocess
 import sys
 
@@ -168,10 +169,14 @@ def test_a_failed_command_leaves_no_folder_for_pictures(folder):
     assert not (folder / "pictures").exists()
 
 
-def run_in_shell(command, folder):
-    slamgym = f"{sys.executable} -m slamgym.cli"
+def run_in_shell(command, folder, **environment):
     return subprocess.run(
-        ["bash", "-c", f"set -o pipefail; {slamgym} {command}"], cwd=folder, capture_output=True, text=True, timeout=60
+        ["bash", "-c", f"set -o pipefail; {sys.executable} -m slamgym.cli {command}"],
+        cwd=folder,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=60,
     )
 
 
@@ -181,6 +186,9 @@ def test_a_closed_pipe_and_a_full_disk_are_no_traceback(folder):
     full = run_in_shell("eval truth.txt good.txt --json > /dev/full", folder)
     assert full.returncode == 2
     assert full.stderr.strip().splitlines() == ["slamgym: cannot print the results: No space left on device"]
+    ascii_only = run_in_shell("eval truth.txt good.txt", folder, PYTHONIOENCODING="ascii")
+    assert ascii_only.returncode == 2
+    assert ascii_only.stderr.startswith("slamgym: cannot print the results: 'ascii' codec")
 
 
 def test_the_commands_are_listed(folder):

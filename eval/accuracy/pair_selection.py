@@ -10,14 +10,12 @@ from typing import cast
 import numpy as np
 
 from slamgym.errors import ConfigError, TrajectoryError, unknown_word
-from slamgym.types import FloatArray, IntArray
+from slamgym.types import FloatArray, IndexPair, IntArray
 
 UNITS = ("frames", "seconds", "metres")
 PAIRS = ("all", "consecutive")
 TOLERANCE = 0.1
 """Of what a pair may be off the wanted distance, as a share of it, unless told otherwise; evo's default."""
-
-IndexPair = tuple[IntArray, IntArray]
 
 _NS_PER_S = 1_000_000_000
 

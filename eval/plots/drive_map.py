@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from matplotlib.axes import Axes
 
-from slamgym.eval.accuracy import align
+from slamgym.eval.accuracy import align, is_determined
 from slamgym.eval.plots.names import percent
 from slamgym.eval.plots.style import COLOURS, new_figure
 from slamgym.eval.plots.top_view import draw_lost, draw_truth, set_top_view
@@ -85,9 +85,9 @@ def _draw_estimate(axes: Axes, slam: SlamRecord) -> None:
 def _aligned_xy(T_world_cam: FloatArray, T_map_cam: FloatArray, frames: BoolArray) -> FloatArray:
     """Estimated positions (N, 2) in the world; NaN, a gap in the line, outside `frames` or where those are too few."""
     xy = np.full((len(frames), 2), np.nan)
-    if np.count_nonzero(frames) >= 3:
-        estimate = T_map_cam[frames]
-        xy[frames] = align(T_world_cam[frames], estimate).apply(estimate)[:, :2, 3]
+    truth, estimate = T_world_cam[frames], T_map_cam[frames]
+    if is_determined(truth, estimate, "se3"):
+        xy[frames] = align(truth, estimate).apply(estimate)[:, :2, 3]
     return xy
 
 

@@ -1,6 +1,6 @@
 """Robustness: what accuracy alone hides."""
 
-from slamgym.eval.robustness.completion import Completion, Exposure, completion, exposure, total_exposure
+from slamgym.eval.robustness.completion import Completion, Exposure, completion, completion_of, exposure, total_exposure
 from slamgym.eval.robustness.correct_rate import (
     correct_poses,
     correct_rate,
@@ -32,6 +32,7 @@ __all__ = [
     "PrecisionRecall",
     "average",
     "completion",
+    "completion_of",
     "correct_poses",
     "correct_rate",
     "correct_rate_of_tracking",

@@ -60,7 +60,11 @@ def completion(stamps_ns: IntArray, T_world_cam: FloatArray, tracked: BoolArray)
     the share of frames is 0; the share of time is NaN below two frames, that of distance when nothing moved.
     Raises TrajectoryError.
     """
-    drive = exposure(stamps_ns, T_world_cam, tracked)
+    return completion_of(exposure(stamps_ns, T_world_cam, tracked), tracked)
+
+
+def completion_of(drive: Exposure, tracked: BoolArray) -> Completion:
+    """`completion` of a drive whose `exposure` is known."""
     return Completion(
         frames=float(tracked.mean()) if len(tracked) else 0.0,
         time=drive.tracked_s / drive.duration_s if drive.duration_s > 0 else np.nan,

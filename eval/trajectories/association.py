@@ -8,9 +8,7 @@ import numpy as np
 
 from slamgym.errors import ConfigError, TrajectoryError, TrajectoryWarning, unknown_word
 from slamgym.eval.trajectories.trajectory import Trajectory
-from slamgym.types import BoolArray, IntArray
-
-IndexPair = tuple[IntArray, IntArray]
+from slamgym.types import BoolArray, IndexPair, IntArray
 
 _NS_PER_S = 1_000_000_000
 

@@ -43,11 +43,11 @@ def read_trajectory(
         "tum": `timestamp tx ty tz qx qy qz qw` a line, seconds.
         "kitti": the 12 numbers of the upper 3x4 of T_world_cam by rows, `times` names the file with their seconds.
         "euroc": `timestamp,x,y,z,qw,qx,qy,qz[,...]`, nanoseconds, with or without a header.
-    repair: NaN, infinity, quaternions of length 0 or more than 1 % off 1, unsorted and repeated stamps, and
-        nanoseconds in a TUM file are errors; with `repair` there is one TrajectoryWarning for each kind instead, and
-        such poses are left out (not finite, length 0), normalised, sorted, or taken as nanoseconds; of repeated stamps
-        the last pose is kept, as the TUM tools do. That comes after the leaving out: a valid pose stays even where one
-        that is not finite follows at the same stamp.
+    repair: NaN, infinity, positions beyond 1e9 m, quaternions of length 0 or more than 1 % off 1, unsorted and repeated
+        stamps, and nanoseconds in a TUM file are errors; with `repair` there is one TrajectoryWarning for each kind
+        instead, and such poses are left out (not finite, too far, length 0), normalised, sorted, or taken as
+        nanoseconds; of repeated stamps the last pose is kept, as the TUM tools do. That comes after the leaving out: a
+        valid pose stays even where one that is not finite follows at the same stamp.
     allow_empty: a file without a pose, which a SLAM that never initialised writes, is an empty trajectory.
     Raises TrajectoryError with file and line, ConfigError for an unknown format.
     """

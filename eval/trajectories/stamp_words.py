@@ -34,6 +34,11 @@ def whole_ns(word: str) -> int:
     return round(stamp)
 
 
+def seconds_word(stamp_ns: int) -> str:
+    """The stamp in seconds with nine decimals, exactly; `seconds_to_ns` reads it back."""
+    return f"{_DECIMAL.scaleb(Decimal(stamp_ns), -9):.9f}"
+
+
 def _decimal(word: str, unit: str) -> Decimal:
     try:
         value = _DECIMAL.create_decimal(word.strip())

@@ -1,12 +1,11 @@
 """Lists of stamps: the frames that a SLAM was fed, or the times of a trajectory without any of its own."""
 
-from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
 
 from slamgym.errors import OutputError, TrajectoryError
-from slamgym.eval.trajectories.stamp_words import seconds_to_ns, whole_ns
+from slamgym.eval.trajectories.stamp_words import seconds_to_ns, seconds_word, whole_ns
 from slamgym.eval.trajectories.text import ParsedLine, read_table
 from slamgym.eval.trajectories.words import columns
 from slamgym.types import IntArray
@@ -36,7 +35,7 @@ def _parse(text: str) -> ParsedLine:
 
 def write_stamps(path: Path | str, stamps_ns: IntArray) -> None:
     """Write stamps (N,), a line of seconds each, exact, as `read_stamps` reads them; raises OutputError."""
-    lines = (f"{Decimal(stamp_ns).scaleb(-9):.9f}\n" for stamp_ns in stamps_ns.tolist())
+    lines = (f"{seconds_word(stamp_ns)}\n" for stamp_ns in stamps_ns.tolist())
     try:
         Path(path).write_text("".join(lines), encoding="utf-8")
     except OSError as error:

@@ -1,7 +1,6 @@
 """Trajectory files in the format of the TUM RGB-D benchmark."""
 
 from collections.abc import Callable
-from decimal import Decimal
 from functools import partial
 from pathlib import Path
 
@@ -9,7 +8,13 @@ import numpy as np
 
 from slamgym.errors import OutputError
 from slamgym.eval.trajectories.poses import FilePoses, to_trajectory
-from slamgym.eval.trajectories.stamp_words import MAX_NANOSECONDS, SMALLEST_NANOSECONDS, seconds_to_ns, whole_ns
+from slamgym.eval.trajectories.stamp_words import (
+    MAX_NANOSECONDS,
+    SMALLEST_NANOSECONDS,
+    seconds_to_ns,
+    seconds_word,
+    whole_ns,
+)
 from slamgym.eval.trajectories.text import ParsedLine, first_data_line, read_table
 from slamgym.eval.trajectories.trajectory import Trajectory
 from slamgym.eval.trajectories.words import columns, numbers, quoted, wrong_columns
@@ -42,7 +47,7 @@ def write_tum(path: Path | str, trajectory: Trajectory) -> None:
     values = np.hstack([trajectory.positions, quaternion_xyzw(trajectory.T)])
     lines = [f"# {_COLUMNS}\n"]
     for stamp_ns, pose in zip(trajectory.stamps_ns.tolist(), values.tolist(), strict=True):
-        lines.append(" ".join([f"{Decimal(stamp_ns).scaleb(-9):.9f}", *(f"{v:.9f}" for v in pose)]) + "\n")
+        lines.append(" ".join([seconds_word(stamp_ns), *(f"{v:.9f}" for v in pose)]) + "\n")
     try:
         Path(path).write_text("".join(lines), encoding="utf-8")
     except OSError as error:

@@ -1,6 +1,5 @@
 """The command line: parses, prints, exits. Nothing else in slamgym prints or exits."""
 
-import os
 import sys
 from collections.abc import Callable
 from importlib import import_module
@@ -8,7 +7,7 @@ from typing import Any
 
 import tyro
 
-from slamgym.cli.terminal import notes, say
+from slamgym.cli.terminal import forget_output, notes, say
 from slamgym.errors import SlamgymError
 
 EXIT_BAD_INPUT = 2
@@ -24,24 +23,14 @@ def main(arguments: list[str] | None = None) -> None:
     arguments = sys.argv[1:] if arguments is None else arguments
     try:
         _parsed(arguments)()
-        sys.stdout.flush()
     except SlamgymError as error:
         say(notes, f"slamgym: {error}", style="red")
         sys.exit(EXIT_BAD_INPUT)
     except BrokenPipeError:
-        _forget_output()
+        forget_output()
         sys.exit(EXIT_CLOSED_PIPE)
-    except OSError as error:
-        _forget_output()
-        say(notes, f"slamgym: cannot print the results: {error.strerror}", style="red")
-        sys.exit(EXIT_BAD_INPUT)
     except KeyboardInterrupt:
         sys.exit(EXIT_INTERRUPTED)
-
-
-def _forget_output() -> None:
-    """What is left to be written would fail again when Python exits."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _parsed(arguments: list[str]) -> Callable[[], None]:

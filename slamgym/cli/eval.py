@@ -11,7 +11,7 @@ import tyro
 from rich.console import Console
 
 from slamgym.cli.options import option_group
-from slamgym.cli.terminal import notes, results, say, told_warnings, working
+from slamgym.cli.terminal import notes, printing, results, say, told_warnings, working
 from slamgym.errors import ConfigError, OutputError, TrajectoryError
 from slamgym.eval.evaluation import Evaluation, evaluate_at
 from slamgym.eval.plots import evaluation_plots, save_figure
@@ -73,7 +73,8 @@ class Eval:
             {"estimate": str(path), **files, **params.model_dump(), **evaluation.summary}
             for path, evaluation in zip(self.estimates, evaluations.values(), strict=True)
         ]
-        self._print(rows, list(evaluations))
+        with printing():
+            self._print(rows, list(evaluations))
         if self.plots is not None:
             _write_plots(self.plots, evaluations)
 

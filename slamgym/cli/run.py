@@ -11,7 +11,7 @@ import tyro
 from slamgym import MAX_EPISODE_STEPS
 from slamgym.agents import AGENTS
 from slamgym.cli.options import option_group
-from slamgym.cli.terminal import metres_progress, notes, results, say
+from slamgym.cli.terminal import metres_progress, notes, printing, results, say
 from slamgym.errors import ConfigError, unknown_word
 from slamgym.params import DriveParams, SlamParams
 from slamgym.report_table import episode_table
@@ -67,5 +67,6 @@ class Run:
         finally:
             env.close()
         folder = write_run(episode, self.out)
-        results.print(episode_table([episode]))
-        say(results, f"run folder: {folder}")
+        with printing():
+            results.print(episode_table([episode]))
+            say(results, f"run folder: {folder}")

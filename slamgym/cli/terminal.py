@@ -1,5 +1,7 @@
 """What every command says on the terminal, and how."""
 
+import os
+import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,7 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 from rich.status import Status
 from rich.text import Text
 
-from slamgym.errors import TrajectoryWarning
+from slamgym.errors import OutputError, TrajectoryWarning
 from slamgym.eval.plots.names import printable
 
 results = Console()
@@ -21,6 +23,25 @@ notes = Console(stderr=True)
 def say(console: Console, text: str, style: str | None = None) -> None:
     """Print one line as it is: a path may hold what would be markup, or would steer the terminal."""
     console.print(printable(text), style=style, markup=False, highlight=False, emoji=False, soft_wrap=True)
+
+
+@contextmanager
+def printing() -> Iterator[None]:
+    """Around what prints the results, to the last byte: raises OutputError when they cannot be printed."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except (OSError, UnicodeEncodeError) as error:
+        forget_output()
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise OutputError(f"cannot print the results: {reason}") from None
+
+
+def forget_output() -> None:
+    """What is left to be printed would fail again when Python exits."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def working(text: str) -> Status:
