@@ -1,7 +1,7 @@
 """The pinhole camera model and the presets that the `camera` parameter names."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from math import isfinite
 from typing import Any
 
@@ -40,12 +40,27 @@ class PinholeCamera:
             raise ConfigError(f"camera: expected no distortion, or finite k1 k2 p1 p2 [k3], got {self.distortion}")
 
 
+LENSES: dict[str, PinholeCamera] = {
+    # As the settings files of ORB-SLAM2 for the sequences of TUM RGB-D have them.
+    "tum_fr1": PinholeCamera(
+        *(640, 480, 517.306408, 516.469215, 318.643040, 255.313989),
+        distortion=(0.262383, -0.953104, -0.005358, 0.002628, 1.163314),
+    ),
+    "tum_fr2": PinholeCamera(
+        *(640, 480, 520.908620, 521.007327, 325.141442, 249.701764),
+        distortion=(0.231222, -0.784899, -0.003257, -0.000105, 0.917205),
+    ),
+    "tum_fr3": PinholeCamera(640, 480, 535.4, 539.2, 320.1, 247.6),
+}
+"""Cameras that real sequences were recorded with."""
+
 CAMERAS: dict[str, PinholeCamera] = {
     # 70 degrees across, as the colour camera of common indoor depth cameras.
     "default": PinholeCamera(640, 480, 460.0, 460.0, 319.5, 239.5),
     "small": PinholeCamera(320, 240, 230.0, 230.0, 159.5, 119.5),
-    "tum_fr1": PinholeCamera(640, 480, 517.306408, 516.469215, 318.643040, 255.313989),
+    **{name: replace(lens, distortion=()) for name, lens in LENSES.items()},
 }
+"""Cameras to render with, which have no distortion."""
 
 
 def resolve_camera(camera: str | PinholeCamera | Mapping[str, Any]) -> PinholeCamera:

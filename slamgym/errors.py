@@ -32,6 +32,10 @@ class TrajectoryWarning(UserWarning):
     """Something about a trajectory was repaired, or looks wrong; what was done about it."""
 
 
+class SequenceError(SlamgymError):
+    """A recorded sequence is malformed, or a file of it is missing or unreadable."""
+
+
 class OutputError(SlamgymError):
     """Results cannot be written where they should go."""
 

@@ -4,7 +4,8 @@ Transforms are float64 arrays of shape (4, 4) or (N, 4, 4); `T_a_b` maps points 
 metres, stamps integer nanoseconds. The camera frame is optical: x right, y down, z forward.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
 from typing import Any
 
@@ -49,13 +50,16 @@ class Frame:
     """One RGB-D image pair.
 
     rgb: uint8 (H, W, 3). depth: float32 (H, W), metres along the optical axis, 0 where nothing was measured.
-    T_world_cam: true pose (4, 4); only the `groundtruth` backend looks at it.
+    T_world_cam: true pose (4, 4), NaN where nothing is known of it; only the backends `groundtruth` and
+    `wheel_odometry` look at it. has_truth: False where it is interpolated in a hole of the truth: good enough to tell
+    how the camera moved, not to judge a pose by.
     """
 
     stamp_ns: int
     rgb: NDArray[np.uint8]
     depth: NDArray[np.float32]
     T_world_cam: FloatArray
+    has_truth: bool = True
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,6 +86,39 @@ class SlamTrajectory:
     map_id: IntArray
 
 
+@dataclass(frozen=True, slots=True)
+class LossContext:
+    """What the SLAM was given when it got lost: at the first lost frame, beside what had been usual just before.
+
+    All but the last two are NaN where they cannot be told. `usual_*`: medians over the tracked frames of the second
+    before. Image measures are those of `slamgym.eval.views`.
+
+    speed_mps, yaw_rate_degps: true motion of the camera. frame_gap_s: since the last fed frame; usual_frame_gap_s.
+    overlap: share of the last fed frame's view that is still in view. keypoints, sharpness, brightness: of the image.
+    valid_depth: share of the pixels with a depth; median_depth_m: over these. tracked_points: at the last tracked
+    frame; tracked_points_slope: their change over the second before, 1/s.
+    cause: a word of `slamgym.eval.robustness.CAUSES`, "unknown" where nothing stands out. explanation: it in words,
+    with the figures that it rests on.
+    """
+
+    speed_mps: float
+    yaw_rate_degps: float
+    frame_gap_s: float
+    usual_frame_gap_s: float
+    overlap: float
+    keypoints: float
+    usual_keypoints: float
+    sharpness: float
+    usual_sharpness: float
+    brightness: float
+    valid_depth: float
+    median_depth_m: float
+    tracked_points: float
+    tracked_points_slope: float
+    cause: str = "unknown"
+    explanation: str = ""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SlamRecord:
     """One whole SLAM run over N fed frames, as the evaluation needs it.
@@ -89,8 +126,11 @@ class SlamRecord:
     stamps_ns: int64 (N,). T_world_cam: true poses (N, 4, 4). states: TrackingState codes, int64 (N,).
     T_map_cam: poses as they were emitted (N, 4, 4), NaN where the state is not OK. map_id: int64 (N,), -1 where the
     state is not OK. tracked_points: int64 (N,). events: N SlamEvents. final: see `SlamTrajectory`.
-    outcome: "" when the SLAM ran to its end, else "crashed" or "timeout". lockstep_overruns: fed frames after which the
-    SLAM's threads still worked when the longest wait of lock-step was over.
+    has_truth: bool (N,), False where the true pose is only interpolated; None: it is known everywhere.
+    outcome: "" when the SLAM ran to its end, else "crashed" or "timeout"; failure: what happened then, in one line;
+    log_tail: the last lines that it printed. contexts: first frame of a loss -> what was seen then.
+    lockstep_overruns: fed frames after which the SLAM's threads still worked when the longest wait of lock-step was
+    over. frames_dropped: frames that were not fed because the SLAM was busy with an earlier one ("realtime").
     """
 
     stamps_ns: IntArray
@@ -101,8 +141,13 @@ class SlamRecord:
     tracked_points: IntArray
     events: tuple[SlamEvent, ...]
     final: SlamTrajectory
+    has_truth: BoolArray | None = None
     outcome: str = ""
+    failure: str = ""
+    log_tail: str = ""
+    contexts: Mapping[int, LossContext] = field(default_factory=dict)
     lockstep_overruns: int = 0
+    frames_dropped: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +156,8 @@ class LossEvent:
 
     start_frame, end_frame: first and last fed frame of the run, inclusive. duration_s: from the first lost frame to the
     first tracked one after it, or to the last fed frame. distance_m, rotation_deg: true motion in that time.
-    outcome: "relocalized", "new_map", "map_reset" or "never".
+    outcome: "relocalized", "new_map", "map_reset" or "never". context: what was seen at its start; None where only
+    poses are known.
     """
 
     start_frame: int
@@ -121,6 +167,7 @@ class LossEvent:
     distance_m: float
     rotation_deg: float
     outcome: str
+    context: LossContext | None = None
 
 
 Summary = dict[str, Any]

@@ -26,15 +26,19 @@ class SlamConfig:
 class Backend(Protocol):
     """One SLAM run over one sequence. It lives in a worker process, so it may crash, hang or print as it likes.
 
-    A backend's module must import without its SLAM library: `Options`, `supports_loop_closure`,
-    `has_background_threads`, `check` and `versions` are used in the user's process, the rest in the worker's.
+    A backend's module must import without its SLAM library: `Options`, `loop_closures`, `has_background_threads`,
+    `offline`, `check` and `versions` are used in the user's process, the rest in the worker's.
     """
 
     Options: ClassVar[type[BaseModel]]
     """Accepted `slam_options`; an unknown key is an error."""
-    supports_loop_closure: ClassVar[bool]
+    loop_closures: ClassVar[tuple[bool, ...]]
+    """Values of `loop_closure` that it can honour, beside None."""
     has_background_threads: ClassVar[bool]
     """Whether work goes on after `track` returns, so that lock-step has to wait for it."""
+    offline: ClassVar[bool]
+    """Whether `track` only takes the frames, answering NOT_INITIALIZED, and `finish` does all the work: a frame then
+    counts as tracked when the final trajectory has a pose at its stamp."""
 
     @classmethod
     def check(cls, config: SlamConfig) -> None:
@@ -62,7 +66,7 @@ BACKENDS: dict[str, str] = {
 """Name -> "module:class". A new backend is one file and one line here."""
 
 
-PARTS = ("Options", "supports_loop_closure", "has_background_threads", "check", "versions", "track", "finish")
+PARTS = ("Options", "loop_closures", "has_background_threads", "offline", "check", "versions", "track", "finish")
 
 
 def load_backend(name: str) -> type[Backend]:
@@ -99,8 +103,11 @@ def check_config(name: str, config: SlamConfig) -> None:
     """Refuse, in the user's process, what the backend cannot honour; raises ConfigError or SlamError."""
     backend = load_backend(name)
     parse_options(backend.Options, config.options)
-    if config.loop_closure is not None and not backend.supports_loop_closure:
-        raise ConfigError(f"slam backend {name!r} closes no loops: leave loop_closure=None, got {config.loop_closure}")
+    if config.loop_closure is not None and config.loop_closure not in backend.loop_closures:
+        choices = ", ".join(map(str, (None, *backend.loop_closures)))
+        raise ConfigError(
+            f"slam backend {name!r}: expected loop_closure as one of {choices}, got {config.loop_closure}"
+        )
     backend.check(config)
 
 

@@ -18,8 +18,9 @@ class GroundTruth:
     """Answers each frame's true pose relative to the first frame."""
 
     Options = GroundTruthOptions
-    supports_loop_closure = False
+    loop_closures = (False,)
     has_background_threads = False
+    offline = False
 
     @classmethod
     def check(cls, config: SlamConfig) -> None:

@@ -49,8 +49,9 @@ class OrbSlam3:
     """One run of ORB-SLAM3. It has to be alone in its process: the maps are followed by what the process prints."""
 
     Options = OrbSlam3Options
-    supports_loop_closure = True
+    loop_closures = (True, False)
     has_background_threads = True
+    offline = False
 
     @classmethod
     def check(cls, config: SlamConfig) -> None:

@@ -22,8 +22,9 @@ class Healthy:
     """Answers the mean grey value as its number of tracked points, so that tests see which frame it got."""
 
     Options = NoOptions
-    supports_loop_closure = False
+    loop_closures = (False,)
     has_background_threads = False
+    offline = False
 
     @classmethod
     def check(cls, config: SlamConfig) -> None:

@@ -13,7 +13,8 @@ from slamgym.slam.orbslam3 import OrbSlam3Options
 def test_every_backend_offers_what_the_protocol_asks(name, config):
     backend = load_backend(name)
     assert backend.Options() is not None  # all options have defaults
-    assert isinstance(backend.supports_loop_closure, bool)
+    assert set(backend.loop_closures) <= {True, False}
+    assert isinstance(backend.offline, bool)
     assert isinstance(backend.has_background_threads, bool)
     check_config(name, config)
 
