@@ -1,8 +1,14 @@
-"""How much does a result change from run to run? One drive, rendered once, is fed to ORB-SLAM3 again and again."""
+"""How much does a result change from run to run? One drive, rendered once, is fed to a SLAM again and again.
+
+With `--sequence FOLDER` it is a recorded sequence instead, such as one of TUM RGB-D.
+"""
 
 import multiprocessing
+import tempfile
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -12,68 +18,72 @@ import tyro
 
 import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
-from slamgym.camera import resolve_camera
-from slamgym.eval.episode import summarize_slam
+from slamgym.eval.datasets import Sequence, read_sequence
 from slamgym.eval.robustness import average
-from slamgym.slam.backend import SlamConfig
-from slamgym.slam.record import run_sequence
-from slamgym.slam.session import SlamSession, Sync
-from slamgym.types import Frame
+from slamgym.params import SlamParams
+from slamgym.recording import record_drive
+from slamgym.replay import replay
+from slamgym.slam.session import Sync
 
 
 def main(
+    sequence: Path | None = None,
+    sequence_camera: str | None = None,
     speed: float = 1.2,
     seed: int = 7,
     scene: str = "procedural",
     path_length_m: float = 8.0,
     camera: str = "default",
+    slam: str = "orbslam3",
+    stride: int = 0,
     repeats: int = 6,
     busy_loops: int = 8,
-    syncs: tuple[Sync, ...] = ("lockstep", "free"),
+    syncs: tuple[Sync, ...] = ("lockstep", "realtime", "free"),
 ) -> None:
-    """Feed the frames of one drive `repeats` times to each sync mode, on an idle machine and beside `busy_loops`."""
-    frames = drive(scene=scene, speed=speed, path_length_m=path_length_m, camera=camera, seed=seed)
-    config = SlamConfig(resolve_camera(camera), fps=30.0)
-    rows = []
-    for sync in syncs:
-        for loops in (0, busy_loops):
-            with busy(loops):
-                rows += [{"sync": sync, "busy loops": loops, **run(config, sync, frames)} for _ in range(repeats)]
-    table = pd.DataFrame(rows)
-    print(f"{len(frames)} frames at {speed:g} m/s")
-    print(table.to_string(index=False))
+    """Feed the same frames `repeats` times in each sync mode, on an idle machine and beside `busy_loops`."""
+    drive = {"speed": speed, "scene": scene, "path_length_m": path_length_m, "camera": camera}
+    with recorded(seed, **drive) if sequence is None else nullcontext(read_sequence(sequence, sequence_camera)) as seq:
+        rows = []
+        for sync in syncs:
+            params = SlamParams.checked({"slam": slam, "slam_sync": sync, "stride": stride})
+            for loops in (0, busy_loops):
+                with busy(loops):
+                    rows += [{"sync": sync, "busy loops": loops, **run(seq, params)} for _ in range(repeats)]
+        table = pd.DataFrame(rows)
+    print(table.to_string(index=False, float_format="%.4f"))
     for condition, runs in table.groupby(["sync", "busy loops"], sort=False):
         ate = runs["ATE m"].to_numpy()
         # A failed run is worse than any other: the median counts it as infinite instead of leaving it out.
         typical = average(ate, ~runs["success"].to_numpy(), "penalise", penalty=np.inf)
-        print(f"{condition}: ATE m {typical}; from {np.nanmin(ate):.3g} to {np.nanmax(ate):.3g}")
+        print(
+            f"{condition}: ATE m {typical}; from {np.nanmin(ate):.4f} to {np.nanmax(ate):.4f}; "
+            f"median wall time {runs['wall s'].median():.1f} s"
+        )
 
 
-def drive(seed: int, **params: Any) -> list[Frame]:
-    """All frames of one drive, rendered once."""
-    env = gym.make("HomeRobot-v0", **params)
-    agent = PathFollower()
-    obs, info = env.reset(seed=seed)
-    frames = [Frame(info["stamp_ns"], obs["rgb"], obs["depth"], info["T_world_cam"])]
-    done = False
-    while not done:
-        obs, _, terminated, truncated, info = env.step(agent.act(obs, info))
-        frames.append(Frame(info["stamp_ns"], obs["rgb"], obs["depth"], info["T_world_cam"]))
-        done = terminated or truncated
-    env.close()
-    return frames
+@contextmanager
+def recorded(seed: int, **params: Any) -> Iterator[Sequence]:
+    """All frames of one drive, rendered once, on the disk for as long as they are needed."""
+    with tempfile.TemporaryDirectory() as folder:
+        env = gym.make("HomeRobot-v0", **params)
+        record_drive(env, PathFollower(), seed, Path(folder))
+        env.close()
+        yield read_sequence(Path(folder))
 
 
-def run(config: SlamConfig, sync: Sync, frames: list[Frame]) -> dict[str, Any]:
+def run(sequence: Sequence, params: SlamParams) -> dict[str, Any]:
     """One row of the table."""
-    with SlamSession("orbslam3", config, sync) as session:
-        summary = summarize_slam(run_sequence(session, frames))
+    begin = time.perf_counter()
+    summary = replay(sequence, params).summary
     return {
         "status": summary["status"],
         "success": summary["success"],
         "ATE m": summary["ate_rmse_m"],
         "completion": summary["completion"],
         "losses": summary["loss_count"],
+        "dropped": summary["frames_dropped"],
+        "overruns": summary["lockstep_overruns"],
+        "wall s": time.perf_counter() - begin,
     }
 
 

@@ -33,7 +33,7 @@ def main(
     sheet = cv2.cvtColor(np.vstack([np.hstack(small[:3]), np.hstack(small[3:])]), cv2.COLOR_RGB2BGR)
     with TemporaryDirectory() as folder:
         map_png = Path(folder) / "map.png"
-        plot_map(map_png, episode.grid, episode.path_xy, episode.T_world_cam, episode.slam, episode.summary)
+        plot_map(map_png, episode.grid, episode.path_xy, episode.truth, episode.slam, episode.summary)
         top_view = np.asarray(cv2.imread(str(map_png)))
     height = round(top_view.shape[0] * sheet.shape[1] / top_view.shape[1])
     top_view = cv2.resize(top_view, (sheet.shape[1], height), interpolation=cv2.INTER_AREA)

@@ -14,7 +14,7 @@ from slamgym.agents.planner import plan_path
 from slamgym.errors import ConfigError, unknown_word
 from slamgym.eval.drive import summarize_drive
 from slamgym.geometry import mast_camera_pose
-from slamgym.params import DriveParams, SlamParams, split_params
+from slamgym.params import DriveParams, SlamInLoopParams, split_params
 from slamgym.render import Renderer
 from slamgym.robot import ROBOT_HEIGHT, ROBOT_RADIUS, DifferentialDrive
 from slamgym.scenes.house import House
@@ -44,7 +44,7 @@ def load_house(scene: str, lighting: str) -> tuple[House, OccupancyGrid, NDArray
 class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
     """A differential-drive robot follows a planned path; one step is one camera frame.
 
-    Keywords: the fields of `DriveParams`, and `render_mode`. `gym.make` also passes the fields of `SlamParams` when a
+    Keywords: the fields of `DriveParams`, and `render_mode`. `gym.make` also passes the fields of `SlamInLoopParams` when a
     SLAM is in the loop; they are kept in `slam_params` for `SlamWrapper`.
 
     Action: Box(2) in [-1, 1]: forward speed (below 0: reverse) and turn rate (above 0: left), scaled by the parameters.
@@ -79,7 +79,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         self._robot: DifferentialDrive | None = None
 
     @staticmethod
-    def _check(params: dict[str, Any]) -> tuple[DriveParams, SlamParams | None]:
+    def _check(params: dict[str, Any]) -> tuple[DriveParams, SlamInLoopParams | None]:
         return DriveParams.checked(params), None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, Info]:
@@ -193,13 +193,13 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
 
 
 class HomeRobotForSlamEnv(HomeRobotEnv):
-    """The same robot; it also takes the fields of `SlamParams` and keeps them for `SlamWrapper`.
+    """The same robot; it also takes the fields of `SlamInLoopParams` and keeps them for `SlamWrapper`.
 
     Keywords of `gym.make` reach only this constructor, not the wrappers around it.
     """
 
     @staticmethod
-    def _check(params: dict[str, Any]) -> tuple[DriveParams, SlamParams | None]:
+    def _check(params: dict[str, Any]) -> tuple[DriveParams, SlamInLoopParams | None]:
         return split_params(params)
 
 

@@ -8,9 +8,10 @@ from pydantic import Field, field_validator, model_validator
 from slamgym.camera import CAMERAS, PinholeCamera, resolve_camera
 from slamgym.checked_params import Params
 from slamgym.errors import ConfigError, unknown_word
+from slamgym.eval.robustness import MapPolicy
 from slamgym.render import Lighting
-from slamgym.slam.backend import load_backend
-from slamgym.slam.session import Sync
+from slamgym.slam.backend import SlamConfig, load_backend, parse_options
+from slamgym.slam.session import Limits, SlamSession, Sync
 
 RADIUS_OF_TURN = 0.25
 """metres; `turn_rate=None` turns at speed / RADIUS_OF_TURN, so that another speed retimes the same path."""
@@ -61,19 +62,25 @@ class DriveParams(Params):
 
 
 class SlamParams(Params):
-    """The SLAM in the loop, how it is fed, and what its tracking is worth."""
+    """The SLAM, how it is fed, and how its maps are judged."""
 
     slam: str = Field("orbslam3", description="SLAM backend, or 'module:class' of your own")
     slam_sync: Sync = Field(
-        "lockstep", description="lockstep: wait after each frame until the SLAM idles; free: feed at full speed"
+        "lockstep",
+        description="lockstep: wait after each frame until the SLAM idles; realtime: feed by the wall clock; free: feed "
+        "at full speed",
     )
     stride: int = Field(0, ge=0, description="frames left out between two that the SLAM sees")
     loop_closure: bool | None = Field(None, description="loop closing on or off; None: the backend's default")
     slam_options: dict[str, Any] = Field(default_factory=dict, description="options of the backend")
-    slam_timeout_s: float = Field(20.0, gt=0, le=3600, description="longest time that the SLAM may take for a frame, s")
-    reward: Literal["progress", "tracking"] = Field(
-        "progress", description="metres of progress, or that minus 1 for each fed frame that is not tracked"
+    map_policy: MapPolicy = Field(
+        "largest", description="map that is evaluated: the largest, the first, or each by itself"
     )
+    slam_timeout_s: float = Field(20.0, gt=0, le=3600, description="longest time that the SLAM may take for a frame, s")
+    slam_finish_timeout_s: float = Field(
+        120.0, gt=0, le=86_400, description="longest time that it may take to load, and to end, s"
+    )
+    slam_memory_mb: float = Field(8000.0, ge=100, description="memory that it may take, MB")
 
     @field_validator("slam")
     @classmethod
@@ -81,12 +88,35 @@ class SlamParams(Params):
         load_backend(slam)
         return slam
 
+    def config(self, camera: PinholeCamera, fps: float) -> SlamConfig:
+        """What the backend is built from, for frames of a camera that takes `fps` a second."""
+        return SlamConfig(camera, fps, self.loop_closure, self.slam_options)
 
-def split_params(values: Mapping[str, Any]) -> tuple[DriveParams, SlamParams]:
+    def session(self, config: SlamConfig) -> SlamSession:
+        """A new run of the backend; raises ConfigError or SlamError."""
+        limits = Limits(self.slam_timeout_s, self.slam_finish_timeout_s, self.slam_memory_mb)
+        return SlamSession(self.slam, config, self.slam_sync, limits)
+
+    def recorded(self, config: SlamConfig) -> dict[str, Any]:
+        """All parameters, the backend's options resolved, and what else the results depend on in `slam_versions`."""
+        backend = load_backend(self.slam)
+        options = parse_options(backend.Options, config.options).model_dump()
+        return {**self.model_dump(), "slam_options": options, "slam_versions": backend.versions(config)}
+
+
+class SlamInLoopParams(SlamParams):
+    """The SLAM in the loop, how it is fed, how its maps are judged, and what its tracking is worth."""
+
+    reward: Literal["progress", "tracking"] = Field(
+        "progress", description="metres of progress, or that minus 1 for each fed frame that is not tracked"
+    )
+
+
+def split_params(values: Mapping[str, Any]) -> tuple[DriveParams, SlamInLoopParams]:
     """The keywords of `gym.make("HomeRobotSLAM-v0", ...)`, sorted into the two groups; raises ConfigError."""
-    drive_names, slam_names = DriveParams.model_fields.keys(), SlamParams.model_fields.keys()
+    drive_names, slam_names = DriveParams.model_fields.keys(), SlamInLoopParams.model_fields.keys()
     for name in values:
         if name not in drive_names | slam_names:
             raise ConfigError(unknown_word("parameter", name, drive_names | slam_names))
     drive = DriveParams.checked({k: v for k, v in values.items() if k in drive_names})
-    return drive, SlamParams.checked({k: v for k, v in values.items() if k in slam_names})
+    return drive, SlamInLoopParams.checked({k: v for k, v in values.items() if k in slam_names})

@@ -1,13 +1,15 @@
-"""One table for several episodes: what is shown after a run."""
+"""One table for several runs, and lines about them: what is shown after a command."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
+import numpy as np
 from rich.table import Table
 
 from slamgym.rollout import Episode
 from slamgym.tables import PERCENT, figures_table
 
-COLUMNS: dict[str, tuple[str, str]] = {
+EPISODE_COLUMNS: dict[str, tuple[str, str]] = {
     "path": ("seed", "{}"),
     "speed\nm/s": ("speed", "{:.2f}"),
     "reached\nm/s": ("speed_p95_mps", "{:.2f}"),
@@ -23,7 +25,50 @@ COLUMNS: dict[str, tuple[str, str]] = {
 """Heading -> key of the episode's config or summary, and its format. ATE never stands without completion.
 RPE 1 is over one fed frame, RPE all over all steps."""
 
+REPLAY_COLUMNS: dict[str, tuple[str, str]] = {
+    "sequence": ("sequence", "{:.18}"),
+    "run": ("run", "{}"),
+    "status": ("status", "{}"),
+    "ATE\nm": ("ate_rmse_m", "{:.4f}"),
+    "pub-\nlished": ("published_ate_rmse_m", "{:.3f}"),
+    "com-\nplete": ("completion", PERCENT),
+    "losses": ("loss_count", "{}"),
+    "fed": ("frames_fed", "{}"),
+    "drop-\nped": ("frames_dropped", "{}"),
+    "ms a\nframe": ("track_ms", "{:.1f}"),
+}
+"""Heading -> key of the run's row, and its format."""
+
+LINES_OF_LOSSES = 10
+
 
 def episode_table(episodes: Sequence[Episode]) -> Table:
     """A table with one row an episode."""
-    return figures_table(COLUMNS, [{**episode.config, **episode.summary} for episode in episodes])
+    return figures_table(EPISODE_COLUMNS, [{**episode.config, **episode.summary} for episode in episodes])
+
+
+def replay_table(rows: Sequence[Mapping[str, Any]]) -> Table:
+    """A table with one row a run."""
+    return figures_table(REPLAY_COLUMNS, rows)
+
+
+def spread_line(name: str, rows: Sequence[Mapping[str, Any]]) -> str:
+    """How far the runs of one sequence lie apart; the median counts one that failed as worse than any other."""
+    ate = np.array([row["ate_rmse_m"] for row in rows])
+    succeeded = np.array([row["success"] for row in rows])
+    median = np.median(np.where(succeeded & np.isfinite(ate), ate, np.inf))
+    known = ate[np.isfinite(ate)]
+    spread = f"{known.min():.4f} to {known.max():.4f} m" if len(known) else "none"
+    return f"{name}: ATE {spread}, median {median:.4f} m; {succeeded.sum()} of {len(rows)} runs without a failure"
+
+
+def loss_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    """When a run was lost, for how long and why, and why it ended early."""
+    for loss in summary["losses"][:LINES_OF_LOSSES]:
+        context = loss["context"]
+        why = f": {context['explanation']}" if context else ""
+        yield f"lost at {loss['start_s']:.2f} s for {loss['duration_s']:.2f} s, {loss['outcome']}{why}"
+    if (more := len(summary["losses"]) - LINES_OF_LOSSES) > 0:
+        yield f"and {more} more losses, see episode.json"
+    if summary["failure"]:
+        yield f"{summary['status']}: {summary['failure']}"

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from slamgym.agents import Agent
 from slamgym.env import HomeRobotEnv, Observation
+from slamgym.eval.trajectories import Trajectory
 from slamgym.interrupt import deferred_interrupt
 from slamgym.scenes.occupancy import OccupancyGrid
-from slamgym.types import FloatArray, IntArray, SlamRecord, Summary
+from slamgym.types import FloatArray, SlamRecord, Summary
 
 RobotEnv = gym.Env[Observation, NDArray[np.float32]]
 
@@ -49,12 +50,23 @@ class Episode:
     summary: Summary
 
     @property
-    def stamps_ns(self) -> IntArray:
-        return np.array([step.stamp_ns for step in self.steps], dtype=np.int64)
+    def truth(self) -> Trajectory:
+        """True poses of the camera's optical frame at every rendered frame."""
+        stamps_ns = np.array([step.stamp_ns for step in self.steps], dtype=np.int64)
+        return Trajectory(stamps_ns, np.array([step.T_world_cam for step in self.steps]))
 
-    @property
-    def T_world_cam(self) -> FloatArray:
-        return np.array([step.T_world_cam for step in self.steps])
+    def motion(self) -> dict[str, Any]:
+        """How the robot moved, columns with a row a rendered frame."""
+        position = self.truth.positions
+        return {
+            "stamp_ns": self.truth.stamps_ns,
+            "x_m": position[:, 0],
+            "y_m": position[:, 1],
+            "speed_mps": [step.speed_mps for step in self.steps],
+            "yaw_rate_radps": [step.yaw_rate_radps for step in self.steps],
+            "progress_m": [step.progress_m for step in self.steps],
+            "collision": [step.collision for step in self.steps],
+        }
 
 
 class EpisodeInterrupted(KeyboardInterrupt):
@@ -122,6 +134,7 @@ def _episode(env: RobotEnv, agent: Agent, seed: int, steps: tuple[Step, ...], en
     with_slam = env.has_wrapper_attr("slam_record")
     # Results first: they end the SLAM, and its log is whole then.
     summary = env.get_wrapper_attr("conclude")() if with_slam else robot.summarize_drive()
+    timing = {"timing": env.get_wrapper_attr("slam_timing")()} if with_slam else {}
     return Episode(
         config=_config(env, robot, agent, seed),
         seed=seed,
@@ -138,6 +151,7 @@ def _episode(env: RobotEnv, agent: Agent, seed: int, steps: tuple[Step, ...], en
             "planned_path_m": robot.path.length_m,
             "collision_steps": sum(step.collision for step in steps),
             "return": sum(step.reward for step in steps),
+            **timing,
         },
     )
 

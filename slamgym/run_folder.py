@@ -1,12 +1,13 @@
-"""A run folder: everything about one episode, in files that other tools read, complete or not there at all.
+"""A run folder: everything about one SLAM run, in files that other tools read, complete or not there at all.
 
 config.yaml      all parameters, as they were resolved
 episode.json     the results, the keys of `info["episode_slam"]` at the top level
-groundtruth.txt  true poses of the camera's optical frame at every rendered frame, TUM format
+groundtruth.txt  true poses of the camera's optical frame, TUM format: at every rendered frame, or all of a sequence
 estimate.txt     the SLAM's final poses in the evaluated map, TUM format
+poses.csv        all its poses, with the map that each is in: as they were emitted ("online"), and the "final" ones
 fed_frames.txt   stamps of the frames that the SLAM was given, for `slamgym eval --frames`
-frames.csv       one row a rendered frame: motion of the robot, and the SLAM's answer where the frame was fed
-map.png          seen from above: grid, planned and true path, aligned estimate, losses
+frames.csv       one row a frame: motion of the camera, and the SLAM's answer where the frame was fed
+map.png          seen from above: grid and planned path of a drive, true path, aligned estimate, losses
 slam.log         what the SLAM printed, the last MiB of it
 """
 
@@ -15,7 +16,9 @@ import os
 import tempfile
 from itertools import count
 from pathlib import Path
+from typing import Any, Protocol
 
+import numpy as np
 import pandas as pd
 import yaml
 
@@ -24,9 +27,32 @@ from slamgym.eval.plots import plot_map
 from slamgym.eval.robustness import estimate_by_frame, evaluated_frames
 from slamgym.eval.summary import without_nan
 from slamgym.eval.trajectories import Trajectory, write_stamps, write_tum
+from slamgym.geometry import quaternion_xyzw
 from slamgym.interrupt import deferred_interrupt
-from slamgym.rollout import Episode
-from slamgym.types import SlamRecord, TrackingState
+from slamgym.scenes.occupancy import OccupancyGrid
+from slamgym.types import FloatArray, IntArray, SlamRecord, Summary, TrackingState
+
+
+class Run(Protocol):
+    """What a run folder is written of: an `Episode` or a `Replay`."""
+
+    @property
+    def config(self) -> dict[str, Any]: ...
+    @property
+    def summary(self) -> Summary: ...
+    @property
+    def truth(self) -> Trajectory | None: ...
+    @property
+    def slam(self) -> SlamRecord | None: ...
+    @property
+    def slam_log(self) -> str: ...
+    @property
+    def grid(self) -> OccupancyGrid | None: ...
+    @property
+    def path_xy(self) -> FloatArray | None: ...
+    def motion(self) -> dict[str, Any]:
+        """Columns with a row a frame, `stamp_ns` among them."""
+        ...
 
 
 def check_free(folder: Path) -> None:
@@ -40,18 +66,18 @@ def check_free(folder: Path) -> None:
         raise OutputError(f"output folder: cannot write in {above}; name another folder, or change its permissions")
 
 
-def write_run(episode: Episode, folder: Path) -> Path:
+def write_run(run: Run, folder: Path) -> Path:
     """Write the run folder in one piece and return it; an interrupted episode's gets the suffix ".interrupted".
 
     Raises OutputError when the folder exists and is not empty or cannot be written. Ctrl-C waits until it is written.
     """
     folder = folder.resolve()
-    if episode.summary["end"] == "interrupted":
+    if run.summary["end"] == "interrupted":
         folder = _interrupted_folder(folder)
     check_free(folder)
     with deferred_interrupt() as interrupted:
         try:
-            _write_at_once(episode, folder)
+            _write_at_once(run, folder)
         except OSError as error:
             reason = error.strerror or str(error)
             raise OutputError(f"output folder: writing {folder} failed ({reason}); make room or name another") from None
@@ -67,42 +93,51 @@ def _interrupted_folder(folder: Path) -> Path:
     return next(candidate for candidate in candidates if not candidate.exists())
 
 
-def _write_at_once(episode: Episode, folder: Path) -> None:
+def _write_at_once(run: Run, folder: Path) -> None:
     folder.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}-", dir=folder.parent) as draft_folder:
         draft = Path(draft_folder) / folder.name
         draft.mkdir()
-        _write_files(episode, draft)
+        _write_files(run, draft)
         draft.replace(folder)
 
 
-def frames_table(episode: Episode) -> pd.DataFrame:
-    """One row a rendered frame; the `slam_*` columns are empty where the frame was not fed."""
-    table = pd.DataFrame(
-        {
-            "stamp_ns": episode.stamps_ns,
-            "x_m": episode.T_world_cam[:, 0, 3],
-            "y_m": episode.T_world_cam[:, 1, 3],
-            "speed_mps": [step.speed_mps for step in episode.steps],
-            "yaw_rate_radps": [step.yaw_rate_radps for step in episode.steps],
-            "progress_m": [step.progress_m for step in episode.steps],
-            "collision": [step.collision for step in episode.steps],
-        }
-    )
-    if episode.slam is None:
-        return table
-    return table.merge(_slam_table(episode.slam), on="stamp_ns", how="left")
+def frames_table(run: Run) -> pd.DataFrame:
+    """One row a frame; the `slam_*` columns are empty where the frame was not fed."""
+    table = pd.DataFrame(run.motion())
+    return table if run.slam is None else table.merge(_slam_table(run.slam), on="stamp_ns", how="left")
 
 
-def final_estimate(record: SlamRecord) -> Trajectory:
+def final_estimate(record: SlamRecord, map_policy: str = "largest") -> Trajectory:
     """The SLAM's final poses (T_map_cam) in the evaluated map; empty when no frame was tracked."""
     T_map_cam, _ = estimate_by_frame(record)
-    chosen = evaluated_frames(record)
+    chosen = evaluated_frames(record, map_policy)
     return Trajectory(record.stamps_ns[chosen], T_map_cam[chosen])
 
 
+def poses_table(record: SlamRecord) -> pd.DataFrame:
+    """All poses of the SLAM, `online` and `final`, each in the map `map_id`: those of two maps share no origin."""
+    online = record.map_id >= 0
+    final = record.final
+    return pd.concat(
+        [
+            _poses("online", record.stamps_ns[online], record.T_map_cam[online], record.map_id[online]),
+            _poses("final", final.stamps_ns, final.T_map_cam, final.map_id),
+        ]
+    )
+
+
+def _poses(trajectory: str, stamps_ns: IntArray, T_map_cam: FloatArray, map_id: IntArray) -> pd.DataFrame:
+    known = np.isfinite(T_map_cam).all(axis=(1, 2))
+    T_map_cam = T_map_cam[known]
+    values = np.hstack([T_map_cam[:, :3, 3], quaternion_xyzw(T_map_cam)])
+    columns = dict(zip(("x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"), values.T, strict=True))
+    return pd.DataFrame(
+        {"trajectory": trajectory, "stamp_ns": stamps_ns[known], "map_id": map_id[known], **columns}
+    )
+
+
 def _slam_table(record: SlamRecord) -> pd.DataFrame:
-    position = record.T_map_cam[:, :3, 3]
     return pd.DataFrame(
         {
             "stamp_ns": record.stamps_ns,
@@ -110,22 +145,21 @@ def _slam_table(record: SlamRecord) -> pd.DataFrame:
             "slam_map_id": pd.array(record.map_id, dtype="Int64"),
             "slam_tracked_points": pd.array(record.tracked_points, dtype="Int64"),
             "slam_event": list(record.events),
-            "slam_x_m": position[:, 0],
-            "slam_y_m": position[:, 1],
-            "slam_z_m": position[:, 2],
         }
     )
 
 
-def _write_files(episode: Episode, folder: Path) -> None:
+def _write_files(run: Run, folder: Path) -> None:
     # Through JSON: a user may have given paths or NumPy's numbers, which YAML cannot write.
-    config = json.loads(json.dumps(episode.config, default=str))
+    config = json.loads(json.dumps(run.config, default=str))
     (folder / "config.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
-    (folder / "episode.json").write_text(json.dumps(without_nan(episode.summary), indent=2, allow_nan=False) + "\n")
-    write_tum(folder / "groundtruth.txt", Trajectory(episode.stamps_ns, episode.T_world_cam))
-    frames_table(episode).to_csv(folder / "frames.csv", index=False, float_format="%.9g")
-    (folder / "slam.log").write_text(episode.slam_log)
-    if episode.slam is not None:
-        write_tum(folder / "estimate.txt", final_estimate(episode.slam))
-        write_stamps(folder / "fed_frames.txt", episode.slam.stamps_ns)
-    plot_map(folder / "map.png", episode.grid, episode.path_xy, episode.T_world_cam, episode.slam, episode.summary)
+    (folder / "episode.json").write_text(json.dumps(without_nan(run.summary), indent=2, allow_nan=False) + "\n")
+    if run.truth is not None:
+        write_tum(folder / "groundtruth.txt", run.truth)
+    frames_table(run).to_csv(folder / "frames.csv", index=False, float_format="%.9g")
+    (folder / "slam.log").write_text(run.slam_log)
+    if run.slam is not None:
+        write_tum(folder / "estimate.txt", final_estimate(run.slam, run.config["map_policy"]))
+        poses_table(run.slam).to_csv(folder / "poses.csv", index=False, float_format="%.9g")
+        write_stamps(folder / "fed_frames.txt", run.slam.stamps_ns)
+    plot_map(folder / "map.png", run.grid, run.path_xy, run.truth, run.slam, run.summary)

@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 from slamgym.env import HomeRobotEnv, Info, Observation
 from slamgym.errors import ConfigError
 from slamgym.eval.episode import summarize_slam
-from slamgym.params import SlamParams
-from slamgym.slam.backend import SlamConfig, check_config, load_backend, parse_options
-from slamgym.slam.record import Fed, feed, finish
-from slamgym.slam.session import SlamSession
+from slamgym.params import SlamInLoopParams
+from slamgym.slam.backend import check_config
+from slamgym.slam.record import SlamRun
+from slamgym.slam.session import LOG_LINES, SlamSession
 from slamgym.types import Frame, SlamEvent, SlamRecord, Summary, TrackingState
-
-LOG_LINES = 100_000
 
 
 class SlamWrapper(
@@ -25,7 +23,7 @@ class SlamWrapper(
 ):
     """Every (stride + 1)-th frame goes to the SLAM, with its true stamp, before `step` returns.
 
-    Without keywords the parameters are those that `gym.make` was given; else they are the fields of `SlamParams`.
+    Without keywords the parameters are those that `gym.make` was given; else they are the fields of `SlamInLoopParams`.
 
     Adds `slam_state` (the TrackingState) to the observation and `info["slam"]`: `state`, `T_map_cam` (4, 4) NaN when
     not tracked, `map_id` (-1), `tracked_points`, `fresh` (whether this step's frame was fed), `event`. In the last
@@ -44,13 +42,8 @@ class SlamWrapper(
             raise ConfigError(f"SlamWrapper: expected a HomeRobot environment without a SLAM, got {env}")
         self._robot = robot
         given = None if slam_params else robot.slam_params
-        self.slam_params = given or SlamParams.checked(slam_params)
-        self._config = SlamConfig(
-            camera=robot.params.camera,
-            fps=robot.params.fps,
-            loop_closure=self.slam_params.loop_closure,
-            options=self.slam_params.slam_options,
-        )
+        self.slam_params = given or SlamInLoopParams.checked(slam_params)
+        self._config = self.slam_params.config(robot.params.camera, robot.params.fps)
         check_config(self.slam_params.slam, self._config)
         assert isinstance(env.observation_space, spaces.Dict)
         self.observation_space = spaces.Dict({**env.observation_space.spaces, "slam_state": spaces.Discrete(3)})
@@ -71,7 +64,7 @@ class SlamWrapper(
             session.close()
             raise
         self._session = session
-        self._fed: list[Fed] = []
+        self._run = SlamRun(session)
         self._steps = 0
         self._record = self._summary = None
         self._feed(obs, info)
@@ -88,7 +81,7 @@ class SlamWrapper(
         reward = float(progress)
         if fresh:
             self._feed(obs, info)
-            if self.slam_params.reward == "tracking" and self._fed[-1].result.state is not TrackingState.OK:
+            if self.slam_params.reward == "tracking" and self._run.last.state is not TrackingState.OK:
                 reward -= 1.0
         terminated = terminated or bool(self._session.outcome)
         obs, info = self._with_slam(obs, info, fresh)
@@ -99,25 +92,23 @@ class SlamWrapper(
     def conclude(self) -> Summary:
         """End the SLAM run, now if it still goes on, and return the results so far; may be called again."""
         if self._summary is None:
-            self._summary = {**summarize_slam(self.slam_record()), **self._robot.summarize_drive()}
+            results = summarize_slam(self.slam_record(), self.slam_params.map_policy)
+            self._summary = {**results, **self._robot.summarize_drive()}
         return dict(self._summary)
 
     def slam_record(self) -> SlamRecord:
         """All that the evaluation needs of the episode's SLAM run; ends the run."""
         if self._record is None:
-            assert self._session is not None
-            self._record = finish(self._session, self._fed)
+            self._record = self._run.finish()
         return self._record
 
     def slam_config(self) -> dict[str, Any]:
-        """All parameters of the SLAM, its options resolved, and the versions that the results depend on."""
-        backend = load_backend(self.slam_params.slam)
-        options = parse_options(backend.Options, self._config.options).model_dump()
-        return {
-            **self.slam_params.model_dump(),
-            "slam_options": options,
-            "slam_versions": backend.versions(self._config),
-        }
+        """See `SlamParams.recorded`."""
+        return self.slam_params.recorded(self._config)
+
+    def slam_timing(self) -> dict[str, float]:
+        """See `SlamRun.timing`; not in `info`, which is the same on every computer."""
+        return self._run.timing()
 
     @property
     def slam_pid(self) -> int | None:
@@ -136,18 +127,15 @@ class SlamWrapper(
         super().close()
 
     def _new_session(self) -> SlamSession:
-        params = self.slam_params
-        session = SlamSession(params.slam, self._config, params.slam_sync, params.slam_timeout_s)
+        session = self.slam_params.session(self._config)
         session.start()
         return session
 
     def _feed(self, obs: Observation, info: Info) -> None:
-        assert self._session is not None
-        frame = Frame(info["stamp_ns"], obs["rgb"], obs["depth"], info["T_world_cam"])
-        self._fed.append(feed(self._session, frame))
+        self._run.feed(Frame(info["stamp_ns"], obs["rgb"], obs["depth"], info["T_world_cam"]))
 
     def _with_slam(self, obs: Observation, info: Info, fresh: bool) -> tuple[Observation, Info]:
-        last = self._fed[-1].result
+        last = self._run.last
         info["slam"] = {
             "state": last.state.label,
             "T_map_cam": last.T_map_cam.copy(),

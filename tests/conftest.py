@@ -57,7 +57,7 @@ def _count_frames():
     def counting_close(session: SlamSession) -> None:
         if session not in counted:
             counted.add(session)
-            FRAMES_FED[session.backend] += session.frames_tracked
+            FRAMES_FED[session.backend] += len(session.track_s)
         close(session)
 
     SlamSession.close = counting_close

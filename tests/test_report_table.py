@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import pytest
 from rich.console import Console
 
-from slamgym.report_table import COLUMNS, episode_table
+from slamgym.report_table import EPISODE_COLUMNS, episode_table
 
 SUMMARY = {
     "seed": 12,
@@ -28,4 +28,4 @@ def test_table_fits_a_terminal_of_80_columns(ate):
     assert "…" not in text
     assert ("0.0123" in text) == (ate == 0.0123)
     assert "100.0%" in text  # completion stands beside it, always
-    assert len(COLUMNS) == len(text.splitlines()[-2].split())
+    assert len(EPISODE_COLUMNS) == len(text.splitlines()[-2].split())

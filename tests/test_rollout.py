@@ -64,10 +64,11 @@ def test_the_files_of_a_run_folder_evaluate_to_what_its_results_say(episode, tmp
 
 
 def test_no_figure_of_an_episode_hides_another(episode):
-    drive = summarize_drive(episode.stamps_ns, episode.T_world_cam, episode.path_xy, 0.4)
+    drive = summarize_drive(episode.truth.stamps_ns, episode.truth.T, episode.path_xy, 0.4)
     slam = summarize_slam(episode.slam)
     assert not drive.keys() & slam.keys()
-    assert not episode.config.keys() & episode.summary.keys()
+    assert episode.config.keys() & episode.summary.keys() == {"map_policy"}
+    assert episode.config["map_policy"] == episode.summary["map_policy"]
     assert episode.summary["path_deviation_max_m"] == drive["path_deviation_max_m"]
 
 
@@ -80,7 +81,7 @@ def test_a_written_config_repeats_the_drive(episode, tmp_path):
     env = gym.make(run["env_id"], **{**config, "slam": "groundtruth", "slam_options": {}})
     again = run_episode(env, PathFollower(), run["seed"])
     env.close()
-    assert np.array_equal(again.T_world_cam, episode.T_world_cam)
+    assert np.array_equal(again.truth.T, episode.truth.T)
 
 
 def test_existing_results_are_never_overwritten(episode, tmp_path):

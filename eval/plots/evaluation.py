@@ -11,12 +11,12 @@ from slamgym.eval.evaluation import Evaluation
 from slamgym.eval.plots.cumulative import plot_cumulative
 from slamgym.eval.plots.names import percent
 from slamgym.eval.plots.sorted_bars import plot_sorted_bars
+from slamgym.eval.plots.top_view import with_holes
 from slamgym.eval.plots.trajectory_time import plot_trajectory_time
 from slamgym.eval.plots.trajectory_top import plot_trajectory_top
 from slamgym.eval.robustness import SUCCESS_COMPLETION, last_posed
-from slamgym.eval.trajectories import Trajectory, find_holes
 from slamgym.geometry import inverse
-from slamgym.types import BoolArray, FloatArray, IntArray
+from slamgym.types import FloatArray
 
 FAILED_WHEN = f"lost once, not tracked to the end, below {percent(SUCCESS_COMPLETION)} complete, or without an ATE"
 
@@ -32,7 +32,7 @@ def evaluation_plots(evaluations: Mapping[str, Evaluation]) -> dict[str, Figure]
         raise ConfigError("evaluation_plots: expected at least one evaluation, got none; give {name: evaluation}")
     frames = next(iter(evaluations.values())).frames
     real = np.any([evaluation.real for evaluation in evaluations.values()], axis=0)
-    true_T = _with_holes(frames.stamps_ns, frames.ref_T, real)
+    true_T = with_holes(frames.stamps_ns, frames.ref_T, real)
     shown = {name: carried_poses(evaluation, true_T) for name, evaluation in evaluations.items()}
     tracked = {name: evaluation.tracked for name, evaluation in evaluations.items()}
     losses = {name: evaluation.losses for name, evaluation in evaluations.items()}
@@ -74,20 +74,7 @@ def carried_errors_m(evaluation: Evaluation) -> FloatArray:
 
 
 def _has_errors(evaluation: Evaluation) -> bool:
-    return bool(evaluation.frames.aligned and evaluation.frames.judged.any())
-
-
-def _with_holes(stamps_ns: IntArray, true_T: FloatArray, real: BoolArray) -> FloatArray:
-    """True poses (N, 4, 4), NaN beyond the first and last real one and in holes between them. A truth at a lower rate
-    than the frames has none for that: what fills it is drawn.
-    """
-    rows = np.flatnonzero(real)
-    before = find_holes(Trajectory(stamps_ns[rows], true_T[rows]), 0.0)
-    known = np.zeros(len(real), dtype=np.bool_)
-    known[rows[0] : rows[-1] + 1] = True
-    for start, after in zip(rows[before], rows[before + 1], strict=True):
-        known[start + 1 : after] = False
-    return np.where(known[:, None, None], true_T, np.nan)
+    return bool((evaluation.frames.judged & evaluation.frames.aligned).any())
 
 
 def _plot_errors(evaluations: Mapping[str, Evaluation]) -> Figure:

@@ -1,6 +1,6 @@
 """What all pictures of a drive from above have in common."""
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,7 +9,8 @@ from matplotlib.lines import Line2D
 from slamgym.eval.plots.style import LOST, TRUTH
 from slamgym.eval.plots.tracked import posed_frames
 from slamgym.eval.robustness import last_posed
-from slamgym.types import FloatArray
+from slamgym.eval.trajectories import Trajectory, find_holes
+from slamgym.types import BoolArray, FloatArray, IntArray
 
 LOST_CROSS: dict[str, Any] = {
     "marker": "X",
@@ -21,8 +22,42 @@ LOST_CROSS: dict[str, Any] = {
 }
 
 
-def set_top_view(axes: Axes, upwards: str = "y") -> None:
-    """One metre is as long in x as upwards, where the picture has the axis y or, in a camera's frame, z."""
+Upwards = Literal["y", "z"]
+
+
+def upward_axis(positions: FloatArray) -> Upwards:
+    """The axis that a picture of positions (N, 2) or (N, 3) has upwards beside x: z where they are those of a camera's
+    frame, y down, so that y hardly changes, or of a camera in a hand that moved in that plane.
+    """
+    size = extent(positions)
+    return "z" if len(size) == 3 and 2.0 * size[1] < min(size[0], size[2]) else "y"
+
+
+def from_above(positions: FloatArray, upwards: Upwards) -> FloatArray:
+    """What the picture shows (N, 2) of positions (N, 2) or (N, 3)."""
+    return np.asarray(positions, dtype=np.float64)[:, [0, 1 if upwards == "y" else 2]]
+
+
+def extent(positions: FloatArray) -> FloatArray:
+    """How far the positions (N, d) reach along each axis (d,), metres; 0 without any."""
+    known = positions[posed_frames(positions)]
+    return np.ptp(known, axis=0) if len(known) else np.zeros(positions.shape[1])
+
+
+def with_holes(stamps_ns: IntArray, true_T: FloatArray, real: BoolArray) -> FloatArray:
+    """True poses (N, 4, 4), NaN beyond the first and last real one and in holes between them. A truth at a lower rate
+    than the frames has none for that: what fills it is drawn.
+    """
+    rows = np.flatnonzero(real)
+    known = np.logical_or.accumulate(real) & np.logical_or.accumulate(real[::-1])[::-1]
+    before = find_holes(Trajectory(stamps_ns[rows], true_T[rows]), 0.0)
+    for start, after in zip(rows[before], rows[before + 1], strict=True):
+        known[start + 1 : after] = False
+    return np.where(known[:, None, None], true_T, np.nan)
+
+
+def set_top_view(axes: Axes, upwards: Upwards = "y") -> None:
+    """One metre is as long in x as upwards."""
     axes.set_aspect("equal")
     axes.set_xlabel("x (m)")
     axes.set_ylabel(f"{upwards} (m)")

@@ -1,7 +1,6 @@
 """The truth and what each system made of it, seen from above."""
 
 from collections.abc import Mapping
-from typing import Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -12,7 +11,7 @@ from matplotlib.lines import Line2D
 from slamgym.errors import TrajectoryError
 from slamgym.eval.plots.names import plain_names
 from slamgym.eval.plots.style import Look, legend_below, look, new_figure, tidy
-from slamgym.eval.plots.top_view import LOST_CROSS, draw_lost, draw_truth, set_top_view
+from slamgym.eval.plots.top_view import LOST_CROSS, draw_lost, draw_truth, extent, from_above, set_top_view, upward_axis
 from slamgym.eval.plots.tracked import marked_frames, posed_frames, tracked_frames, tracked_share
 from slamgym.eval.robustness import untracked_runs
 from slamgym.types import BoolArray, FloatArray
@@ -31,8 +30,8 @@ def plot_trajectory_top(
     """
     _check(truth, estimates)
     frames = tracked_frames(estimates, tracked)
-    upwards = _upwards(truth)
-    true_xy, *paths = (_from_above(positions, upwards) for positions in (truth, *estimates.values()))
+    upwards = upward_axis(truth)
+    true_xy, *paths = (from_above(positions, upwards) for positions in (truth, *estimates.values()))
     figure = new_figure(8.0, _height(true_xy, 8.0))
     axes = figure.add_subplot()
     set_top_view(axes, upwards)
@@ -59,25 +58,9 @@ def _check(truth: FloatArray, estimates: Mapping[str, FloatArray]) -> None:
             )
 
 
-def _extent(positions: FloatArray) -> FloatArray:
-    """How far the positions (N, d) reach along each axis (d,), metres; 0 without any."""
-    known = positions[posed_frames(positions)]
-    return np.ptp(known, axis=0) if len(known) else np.zeros(positions.shape[1])
-
-
-def _upwards(truth: FloatArray) -> Literal["y", "z"]:
-    """The axis that is drawn upwards."""
-    extent = _extent(truth)
-    return "z" if len(extent) == 3 and 2.0 * extent[1] < min(extent[0], extent[2]) else "y"
-
-
-def _from_above(positions: FloatArray, upwards: Literal["y", "z"]) -> FloatArray:
-    return np.asarray(positions, dtype=np.float64)[:, [0, 1 if upwards == "y" else 2]]
-
-
 def _height(xy: FloatArray, width_in: float) -> float:
     """Inches in which the path's proportions fill the width, within what a page holds."""
-    size = _extent(xy) + 1e-9
+    size = extent(xy) + 1e-9
     return float(np.clip(width_in * size[1] / size[0], 3.0, 8.0)) + 1.0
 
 

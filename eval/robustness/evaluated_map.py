@@ -1,11 +1,16 @@
-"""Final poses by fed frame, and the map that is evaluated: poses of two maps are never aligned together."""
+"""Final poses by fed frame, and the maps that are evaluated: poses of two maps are never aligned together."""
 
-from typing import cast
+from typing import Literal, cast, get_args
 
 import numpy as np
 
+from slamgym.errors import ConfigError, unknown_word
 from slamgym.eval.robustness.losses import tracked_frames
 from slamgym.types import BoolArray, FloatArray, IntArray, SlamRecord
+
+MapPolicy = Literal["largest", "first", "each"]
+"""Which maps of a run are evaluated; see `frames_by_policy`."""
+MAP_POLICIES: tuple[str, ...] = get_args(MapPolicy)
 
 
 def final_by_frame(record: SlamRecord) -> tuple[FloatArray, IntArray]:
@@ -37,7 +42,32 @@ def most_frequent_map(map_ids: IntArray) -> int:
     return int(ids[np.lexsort((first, -count))[0]]) if len(ids) else -1
 
 
-def evaluated_frames(record: SlamRecord) -> BoolArray:
-    """Whether each fed frame is tracked in the evaluated map (N,): the `tracked` of plain trajectories."""
-    _, maps = estimate_by_frame(record)
-    return cast(BoolArray, (maps == most_frequent_map(maps)) & (maps >= 0))
+def first_map(map_ids: IntArray) -> int:
+    """The map id of the first frame that is in a map; -1 when none is."""
+    return next((int(map_id) for map_id in map_ids if map_id >= 0), -1)
+
+
+def frames_by_policy(map_ids: IntArray, map_policy: str) -> BoolArray:
+    """Which frames (N,) are in an evaluated map; map_ids: int64 (N,), -1 for none.
+
+    "largest": the `most_frequent_map`; "first": the one that the first frame in any is in; "each": all of them.
+    Raises ConfigError for another policy.
+    """
+    match map_policy:
+        case "largest":
+            evaluated = map_ids == most_frequent_map(map_ids)
+        case "first":
+            evaluated = map_ids == first_map(map_ids)
+        case "each":
+            evaluated = np.ones(len(map_ids), dtype=np.bool_)
+        case _:
+            raise ConfigError(unknown_word("map policy", map_policy, MAP_POLICIES))
+    return cast(BoolArray, evaluated & (map_ids >= 0))
+
+
+def evaluated_frames(record: SlamRecord, map_policy: str = "largest") -> BoolArray:
+    """Whether each fed frame is tracked in an evaluated map (N,): the `tracked` of plain trajectories.
+
+    The maps are those of `estimate_by_frame`, so that maps which were merged are one. Raises ConfigError.
+    """
+    return frames_by_policy(estimate_by_frame(record)[1], map_policy)

@@ -58,6 +58,11 @@ def _between(operated: float, failures: int) -> float:
     return np.inf if operated > 0 else np.nan
 
 
+def cause_counts(losses: Iterable[LossEvent]) -> dict[str, int]:
+    """How many losses each cause had, the most frequent first, of those losses that have a context."""
+    return dict(Counter(loss.context.cause for loss in losses if loss.context is not None).most_common())
+
+
 def status_counts(statuses: Iterable[str]) -> dict[str, int]:
     """How many runs ended with each status, all five in the order of STATUSES. Raises ConfigError for another word."""
     counts = Counter(statuses)

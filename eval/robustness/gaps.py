@@ -42,16 +42,17 @@ def covered_frames(stamps_ns: IntArray, poses_ns: IntArray, max_gap_s: float) ->
     return np.asarray(short[before] | short[after], dtype=np.bool_)
 
 
-def find_gaps(stamps_ns: IntArray, T_world_cam: FloatArray, tracked: BoolArray) -> list[LossEvent]:
+def find_gaps(stamps_ns: IntArray, T_world_cam: FloatArray | None, tracked: BoolArray) -> list[LossEvent]:
     """Loss events of plain frames: maximal runs of frames without a pose, after the first with one.
 
-    stamps_ns: int64 (N,); T_world_cam: true poses (N, 4, 4); tracked: bool (N,). `start_s` counts from the first frame.
-    Distance and rotation are those of the true path, added up from frame to frame, from the first frame of the run to
-    the first tracked one after it, or to the last frame. The outcome is "relocalized", or "never" for a run that lasts
-    to the end. Raises TrajectoryError.
+    stamps_ns: int64 (N,); T_world_cam: true poses (N, 4, 4), None where none is known; tracked: bool (N,). `start_s`
+    counts from the first frame. Distance and rotation are those of the true path, added up from frame to frame, from
+    the first frame of the run to the first tracked one after it, or to the last frame; NaN without true poses. The
+    outcome is "relocalized", or "never" for a run that lasts to the end. Raises TrajectoryError.
     """
     check_frames(stamps_ns, tracked, T_world_cam)
-    step_m, step_rad = step_sizes(T_world_cam)
+    unknown = np.full(len(stamps_ns), np.nan)
+    step_m, step_rad = (unknown, unknown) if T_world_cam is None else step_sizes(T_world_cam)
     return [
         LossEvent(
             start_frame=start,

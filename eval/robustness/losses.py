@@ -1,4 +1,4 @@
-"""Which frames were tracked, losses, status, success.
+"""Which frames were tracked, what is known of their true poses, losses, status, success.
 
 A frame is tracked when its state was OK as it was fed; poses that a SLAM writes for other frames are guesses, and never
 count.
@@ -7,8 +7,11 @@ count.
 from dataclasses import replace
 from typing import cast
 
+import numpy as np
+
 from slamgym.eval.robustness.gaps import find_gaps
-from slamgym.types import BoolArray, LossEvent, SlamEvent, SlamRecord, TrackingState
+from slamgym.eval.trajectories import Trajectory, interpolate
+from slamgym.types import BoolArray, FloatArray, LossEvent, SlamEvent, SlamRecord, TrackingState
 
 STATUSES = ("ok", "lost", "init_failed", "crashed", "timeout")
 """All that `status` may say."""
@@ -29,21 +32,39 @@ def tracked_frames(record: SlamRecord) -> BoolArray:
     return cast(BoolArray, record.states == TrackingState.OK)
 
 
+def true_poses(record: SlamRecord) -> tuple[FloatArray | None, BoolArray]:
+    """True poses (N, 4, 4), to measure the path by, and which of them an estimated pose may be judged by, bool (N,).
+
+    A pose that is NaN is interpolated between its neighbours, or that of the first or last known one beyond these;
+    None where no pose is known at all.
+    """
+    T, stamps_ns = record.T_world_cam, record.stamps_ns
+    known = np.asarray(np.isfinite(T).all(axis=(1, 2)))
+    real = known if record.has_truth is None else known & record.has_truth
+    if known.all():
+        return T, real
+    if not known.any():
+        return None, real
+    return interpolate(Trajectory(stamps_ns[known], T[known]), stamps_ns), real
+
+
 def find_losses(record: SlamRecord) -> list[LossEvent]:
     """Maximal runs of fed frames, after the first initialisation, whose state is not OK.
 
-    As `find_gaps`; the outcome is told by the event of the first tracked frame after the run, and where that says
-    nothing of it, by whether the map is still the one from before.
+    As `find_gaps`, by the `true_poses`; the outcome is told by the event of the first tracked frame after the run, and
+    where that says nothing of it, by whether the map is still the one from before. The context is the record's.
     """
-    gaps = find_gaps(record.stamps_ns, record.T_world_cam, tracked_frames(record))
-    return [replace(gap, outcome=_outcome(record, gap.start_frame, gap.end_frame)) for gap in gaps]
+    gaps = find_gaps(record.stamps_ns, true_poses(record)[0], tracked_frames(record))
+    return [
+        replace(gap, outcome=_outcome(record, gap), context=record.contexts.get(gap.start_frame)) for gap in gaps
+    ]
 
 
-def _outcome(record: SlamRecord, start: int, end: int) -> str:
-    after = end + 1
+def _outcome(record: SlamRecord, gap: LossEvent) -> str:
+    after = gap.end_frame + 1
     if after == len(record.states):
         return "never"
-    same_map = record.map_id[start - 1] == record.map_id[after]
+    same_map = record.map_id[gap.start_frame - 1] == record.map_id[after]
     return _OUTCOMES.get(record.events[after], "relocalized" if same_map else "new_map")
 
 

@@ -14,7 +14,13 @@ EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130
 EXIT_CLOSED_PIPE = 141
 
-COMMANDS = {"run": "slamgym.cli.run:Run", "eval": "slamgym.cli.eval:Eval"}
+COMMANDS = {
+    "run": "slamgym.cli.run:Run",
+    "record": "slamgym.cli.record:Record",
+    "replay": "slamgym.cli.replay:ReplayCommand",
+    "eval": "slamgym.cli.eval:Eval",
+    "vocab": "slamgym.cli.vocab:Vocab",
+}
 """Name -> the options of a command, a class whose `__call__` carries it out."""
 
 

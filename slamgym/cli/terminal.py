@@ -66,11 +66,12 @@ def told_warnings(about: Path | None = None) -> Iterator[None]:
         yield
 
 
-def metres_progress() -> Progress:
+def progress_bar(done: str) -> Progress:
+    """A bar; `done` formats what is done, as "{task.completed:.1f} m"."""
     return Progress(
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
-        TextColumn("{task.completed:.1f} m"),
+        TextColumn(done),
         TimeElapsedColumn(),
         TimeRemainingColumn(),
         console=notes,

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
+from importlib.metadata import entry_points
 from typing import Any, ClassVar, Protocol, TypeVar, cast
 
 import numpy as np
@@ -60,20 +61,38 @@ class Backend(Protocol):
 
 
 BACKENDS: dict[str, str] = {
+    "command": "slamgym.slam.command:Command",
     "groundtruth": "slamgym.slam.groundtruth:GroundTruth",
+    "opencv": "slamgym.slam.opencv_odometry:OpenCvOdometry",
+    "orbslam2": "slamgym.slam.orbslam2:OrbSlam2",
     "orbslam3": "slamgym.slam.orbslam3:OrbSlam3",
+    "wheel_odometry": "slamgym.slam.wheel_odometry:WheelOdometry",
 }
 """Name -> "module:class". A new backend is one file and one line here."""
+
+ENTRY_POINTS = "slamgym.slam_backends"
+"""Group of entry points by which installed packages add backends of theirs."""
 
 
 PARTS = ("Options", "loop_closures", "has_background_threads", "offline", "check", "versions", "track", "finish")
 
 
+def backend_target(name: str) -> str:
+    """The "module:class" that a name stands for: a registered one, an installed package's, or one as it is.
+
+    Raises ConfigError.
+    """
+    if name in BACKENDS or ":" in name:
+        return BACKENDS.get(name, name)
+    installed = {entry.name: entry.value for entry in entry_points(group=ENTRY_POINTS)}
+    if name not in installed:
+        raise ConfigError(unknown_word("slam backend", name, {*BACKENDS, *installed}))
+    return installed[name]
+
+
 def load_backend(name: str) -> type[Backend]:
-    """The class that a registered name, or a "module:class" of the user's own, stands for; raises ConfigError."""
-    if name not in BACKENDS and ":" not in name:
-        raise ConfigError(unknown_word("slam backend", name, BACKENDS))
-    module, _, attribute = BACKENDS.get(name, name).partition(":")
+    """The class that a name stands for, see `backend_target`; raises ConfigError."""
+    module, _, attribute = backend_target(name).partition(":")
     try:
         backend = getattr(import_module(module), attribute)
     except (ImportError, AttributeError, TypeError, ValueError) as error:

@@ -4,7 +4,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from slamgym.geometry import inverse
-from slamgym.slam.backend import SlamConfig
+from slamgym.slam.backend import SlamConfig, untracked
 from slamgym.types import FloatArray, Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
 
@@ -15,9 +15,9 @@ class GroundTruthOptions(BaseModel):
 
 
 class GroundTruth:
-    """Answers each frame's true pose relative to the first frame."""
+    """Answers each frame's true pose relative to the first one; a frame whose pose is not known is not tracked."""
 
-    Options = GroundTruthOptions
+    Options: type[BaseModel] = GroundTruthOptions
     loop_closures = (False,)
     has_background_threads = False
     offline = False
@@ -33,16 +33,32 @@ class GroundTruth:
     def __init__(self, config: SlamConfig) -> None:  # noqa: ARG002
         self._stamps_ns: list[int] = []
         self._poses: list[FloatArray] = []
+        self._T_map_world: FloatArray | None = None
+        self._event = SlamEvent.INITIALIZED
 
     def track(self, frame: Frame) -> TrackResult:
+        if not np.isfinite(frame.T_world_cam).all():
+            return self._blind()
+        event, self._event = self._event, SlamEvent.NONE
+        T_map_cam = self.locate(frame.T_world_cam)
         self._stamps_ns.append(frame.stamp_ns)
-        self._poses.append(frame.T_world_cam)
-        event = SlamEvent.NONE if len(self._poses) > 1 else SlamEvent.INITIALIZED
-        T_map_cam = inverse(self._poses[0]) @ frame.T_world_cam
+        self._poses.append(T_map_cam)
         return TrackResult(TrackingState.OK, T_map_cam, map_id=0, tracked_points=0, event=event)
 
+    def locate(self, T_world_cam: FloatArray) -> FloatArray:
+        """T_map_cam (4, 4) of the next frame, whose true pose (4, 4) is known."""
+        if self._T_map_world is None:
+            self._T_map_world = inverse(T_world_cam)
+        return self._T_map_world @ T_world_cam
+
     def finish(self) -> SlamTrajectory:
-        T_world_cam = np.array(self._poses).reshape(-1, 4, 4)
-        T_map_world = inverse(T_world_cam[0]) if len(T_world_cam) else np.eye(4)
         stamps_ns = np.array(self._stamps_ns, dtype=np.int64)
-        return SlamTrajectory(stamps_ns, T_map_world @ T_world_cam, np.zeros(len(stamps_ns), dtype=np.int64))
+        return SlamTrajectory(stamps_ns, np.array(self._poses).reshape(-1, 4, 4), np.zeros_like(stamps_ns))
+
+    def _blind(self) -> TrackResult:
+        """Answer for a frame without a true pose; the next one that has one tells that it is found again."""
+        if not self._poses:
+            return untracked(TrackingState.NOT_INITIALIZED)
+        event = SlamEvent.LOST if self._event is SlamEvent.NONE else SlamEvent.NONE
+        self._event = SlamEvent.RELOCALIZED
+        return untracked(TrackingState.LOST, event)

@@ -2,47 +2,27 @@
 
 import os
 import stat
-from collections.abc import Iterator
-from contextlib import contextmanager
 from importlib import import_module
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
 
 from slamgym.errors import SlamError
 from slamgym.geometry import from_quaternion
 from slamgym.slam.backend import SlamConfig, parse_options, untracked
 from slamgym.slam.map_tracker import MapTracker, final_trajectory
+from slamgym.slam.orb_settings import OrbOptions, memory_file, settings
 from slamgym.slam.vocabulary import vocabulary_hash, vocabulary_path
 from slamgym.types import FloatArray, Frame, IntArray, SlamTrajectory, TrackingState, TrackResult
 
 _INSTALL = "pip install pyorbslam3, and on Debian: apt install libgl1 libegl1 libopengl0 libglx0 libsm6 libice6"
 
-# The viewer is never opened, but its settings are compulsory.
-_VIEWER = [
-    *("Viewer.KeyFrameSize", "Viewer.KeyFrameLineWidth", "Viewer.GraphLineWidth", "Viewer.PointSize"),
-    *("Viewer.CameraSize", "Viewer.CameraLineWidth"),
-    *("Viewer.ViewpointX", "Viewer.ViewpointY", "Viewer.ViewpointZ", "Viewer.ViewpointF"),
-]
 
-
-class OrbSlam3Options(BaseModel):
-    """The settings of ORB-SLAM3's own files for RGB-D cameras, with their usual values."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    vocabulary: Path | None = Field(None, description="DBoW2 text file; None: the one of slamgym")
-    features: int = Field(1000, ge=100, le=20_000, description="ORB features an image")
-    scale_factor: float = Field(1.2, gt=1.0, le=2.0, description="scale between pyramid levels")
-    levels: int = Field(8, ge=1, le=16, description="pyramid levels")
-    ini_fast: int = Field(20, ge=1, le=255, description="FAST threshold tried first, grey levels")
-    min_fast: int = Field(7, ge=1, le=255, description="FAST threshold where the first finds nothing")
-    baseline: float = Field(0.07732, gt=0, description="baseline of the virtual stereo camera, metres")
-    depth_threshold: float = Field(40.0, gt=0, description="largest depth of a close point, in baselines")
+class OrbSlam3Options(OrbOptions):
+    """ORB-SLAM3 has no options but those that it shares with ORB-SLAM2."""
 
 
 class OrbSlam3:
@@ -87,7 +67,7 @@ class OrbSlam3:
         self._slam.shutdown()
         if all(map_id in self._maps.thrown_away for *_, map_id in self._online):
             return _trajectory([])  # ORB-SLAM3 crashes when it saves a trajectory without a map
-        with _memory_file() as (file, path):
+        with memory_file() as (file, path):
             self._slam.save_trajectory_euroc(path)
             saved = read_saved(file.read().decode(), self._first_stamp_ns or 0)
         return final_trajectory(_trajectory(self._online), saved, self._maps.thrown_away)
@@ -99,47 +79,13 @@ class OrbSlam3:
         return (stamp_ns - self._first_stamp_ns) * 1e-9
 
 
-def settings(config: SlamConfig, options: OrbSlam3Options) -> str:
-    """ORB-SLAM3's settings file, version 1.0. Depth comes in metres. Its fps is a whole number of at least 1."""
-    camera = config.camera
-    values: dict[str, Any] = {
-        "File.version": '"1.0"',
-        "Camera.type": '"PinHole"',
-        **{f"Camera1.{name}": float(getattr(camera, name)) for name in ("fx", "fy", "cx", "cy")},
-        **{f"Camera1.{k}": float(v) for k, v in zip(("k1", "k2", "p1", "p2", "k3"), camera.distortion, strict=False)},
-        "Camera.width": camera.width,
-        "Camera.height": camera.height,
-        "Camera.fps": max(1, round(config.fps)),
-        "Camera.RGB": 1,
-        "Stereo.b": options.baseline,
-        "Stereo.ThDepth": options.depth_threshold,
-        "RGBD.DepthMapFactor": 1.0,
-        "ORBextractor.nFeatures": options.features,
-        "ORBextractor.scaleFactor": options.scale_factor,
-        "ORBextractor.nLevels": options.levels,
-        "ORBextractor.iniThFAST": options.ini_fast,
-        "ORBextractor.minThFAST": options.min_fast,
-        "loopClosing": int(config.loop_closure is not False),
-        **dict.fromkeys(_VIEWER, 1.0),
-    }
-    return "\n".join(["%YAML:1.0", *(f"{key}: {value}" for key, value in values.items()), ""])
-
-
 def _start(vocabulary: Path, settings_text: str) -> Any:
     try:
         library = import_module("pyorbslam3")
     except ImportError as error:
         raise SlamError(f"slam backend 'orbslam3': pyorbslam3 cannot be loaded ({error}); {_INSTALL}") from error
-    with _memory_file() as (file, path):
-        file.write(settings_text.encode())
+    with memory_file(settings_text) as (_, path):
         return library.Slam(vocabulary, path, library.Sensor.RGBD)
-
-
-@contextmanager
-def _memory_file() -> Iterator[tuple[IO[bytes], str]]:
-    """A file for ORB-SLAM3, and its path in this process. It has no name: nothing is left behind by a crash."""
-    with os.fdopen(os.memfd_create("slamgym"), "r+b", buffering=0) as file:
-        yield file, f"/proc/self/fd/{file.fileno()}"
 
 
 class _OwnOutput:

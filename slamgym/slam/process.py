@@ -1,6 +1,7 @@
 """The worker process as the parent sees it: start it, ask it, end it."""
 
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -10,11 +11,26 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from pickle import UnpicklingError
-from typing import IO, Any
+from typing import IO, Any, Literal
 
+from slamgym.slam.memory import resident_mb
 from slamgym.slam.worker import Reply
 
 _KILL_WAIT_S = 5.0
+_LOOK_INTERVAL_S = 0.05
+"""Between two looks at the memory of a worker that is at work; it is ended before it has taken much more than it may."""
+
+Outcome = Literal["crashed", "timeout"]
+
+
+class WorkerLost(Exception):
+    """The worker cannot answer any more; `why` says in one line what happened."""
+
+    def __init__(self, outcome: Outcome, why: str) -> None:
+        super().__init__(why)
+        self.outcome: Outcome = outcome
+        self.why = why
+
 
 _spawners: dict[int, ThreadPoolExecutor] = {}
 
@@ -31,56 +47,87 @@ def _spawner() -> ThreadPoolExecutor:
 
 
 class WorkerProcess:
-    """A worker with its socket. Its output goes to `log`; `memory_fd` is inherited."""
+    """A worker with its socket. Its output goes to `log`; `memory_fd` is inherited; temporary files go to `scratch`.
 
-    def __init__(self, memory_fd: int, log: IO[bytes]) -> None:
+    It is ended when it, with the programs that it started, takes more than `memory_limit_mb` of memory.
+    """
+
+    def __init__(self, memory_fd: int, log: IO[bytes], scratch: Path, memory_limit_mb: float) -> None:
+        self._memory_limit_mb = memory_limit_mb
         ours, theirs = socket.socketpair()
         with theirs:
             self._connection: Connection[Any, Any] = Connection(ours.detach())
-            self._process = _spawner().submit(_spawn, theirs.fileno(), memory_fd, log).result()
+            self._process = _spawner().submit(_spawn, theirs.fileno(), memory_fd, log, scratch).result()
         self._asked = 0
+        self._next_look = 0.0
 
     @property
     def pid(self) -> int:
         return self._process.pid
 
     def send(self, request: str, *arguments: Any) -> None:
-        """Raises ConnectionError when the worker is gone."""
+        """Ask; that the worker is gone is told by `receive`."""
         self._asked += 1
-        self._connection.send((self._asked, request, *arguments))
+        with suppress(ConnectionError):
+            self._connection.send((self._asked, request, *arguments))
 
     def receive(self, timeout_s: float) -> Reply:
-        """The answer to the last request.
-
-        Raises TimeoutError when there is none in time, ConnectionError when the worker is gone.
-        """
+        """The answer to the last request; raises WorkerLost when there is none in time, or will never be one."""
         deadline = time.monotonic() + timeout_s
-        while self._connection.poll(max(0.0, deadline - time.monotonic())):
+        while (left_s := deadline - time.monotonic()) > 0:
+            answered = self._connection.poll(min(left_s, _LOOK_INTERVAL_S))
+            self._check_memory()
+            if not answered:
+                continue
             try:
                 number, ok, value = self._connection.recv()
-            except (EOFError, OSError, UnpicklingError) as error:
-                raise ConnectionError("the worker is gone") from error
+            except (EOFError, OSError, UnpicklingError):
+                raise WorkerLost("crashed", self._how_it_ended()) from None
             # Ctrl-C may have ended the wait for an earlier answer, which comes first now.
             if number == self._asked:
                 return ok, value
-        raise TimeoutError(f"no answer within {timeout_s} s")
+        raise WorkerLost("timeout", f"no answer within {timeout_s:g} s")
+
+    def _check_memory(self) -> None:
+        if time.monotonic() < self._next_look:
+            return
+        self._next_look = time.monotonic() + _LOOK_INTERVAL_S
+        used_mb = resident_mb(self.pid)
+        if used_mb > self._memory_limit_mb:
+            limit = f"more than its limit of {self._memory_limit_mb:,.0f} MB"
+            raise WorkerLost("crashed", f"it took {used_mb:,.0f} MB of memory, {limit}")
+
+    def _how_it_ended(self) -> str:
+        """Looked at without collecting the process: as long as it is not, nobody else gets its number."""
+        deadline = time.monotonic() + _KILL_WAIT_S
+        while time.monotonic() < deadline:
+            ended = os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+            if ended is not None and ended.si_code == os.CLD_EXITED:
+                return f"its process ended with exit code {ended.si_status}"
+            if ended is not None:
+                return f"its process was ended by signal {ended.si_status} ({signal.strsignal(ended.si_status)})"
+            time.sleep(_LOOK_INTERVAL_S)
+        return "it closed its socket"
 
     def kill(self) -> None:
-        """End the process at once and collect it. The worker keeps nothing that would need an orderly end."""
-        self._process.kill()
-        with suppress(subprocess.TimeoutExpired):  # the kernel may take its time, the user should not wait for it
-            self._process.wait(_KILL_WAIT_S)
+        """End the process, and all that it started, at once. It keeps nothing that would need an orderly end."""
+        if self._process.returncode is None:
+            with suppress(ProcessLookupError):
+                os.killpg(self.pid, signal.SIGKILL)
+            with suppress(subprocess.TimeoutExpired):  # the kernel may take its time, the user should not wait for it
+                self._process.wait(_KILL_WAIT_S)
         self._connection.close()
 
 
-def _spawn(socket_fd: int, memory_fd: int, log: IO[bytes]) -> subprocess.Popen[bytes]:
-    # A session of its own: Ctrl-C in the terminal is for the user's program, which then ends the worker.
+def _spawn(socket_fd: int, memory_fd: int, log: IO[bytes], scratch: Path) -> subprocess.Popen[bytes]:
+    # A session of its own: Ctrl-C in the terminal is for the user's program, which then ends the worker and its group.
     return subprocess.Popen(
         [sys.executable, "-P", "-u", "-m", "slamgym.slam.worker", str(socket_fd), str(memory_fd), str(os.getpid())],
         stdin=subprocess.DEVNULL,
         stdout=log,
         stderr=log,
         pass_fds=(socket_fd, memory_fd),
-        env=os.environ | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)},
+        env=os.environ
+        | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path), "TMPDIR": str(scratch)},
         start_new_session=True,
     )

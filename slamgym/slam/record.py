@@ -1,12 +1,26 @@
-"""From the frames that a SLAM was fed to the record that the evaluation needs."""
+"""From the frames that a SLAM is fed to the record that the evaluation needs."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
+from slamgym.eval.robustness import untracked_runs
+from slamgym.slam.history import FrameHistory, WholeHistory
+from slamgym.slam.pace import Pace
 from slamgym.slam.session import SlamSession
-from slamgym.types import FloatArray, Frame, SlamRecord, SlamTrajectory, TrackResult
+from slamgym.types import (
+    BoolArray,
+    FloatArray,
+    Frame,
+    LossContext,
+    SlamEvent,
+    SlamRecord,
+    SlamTrajectory,
+    TrackingState,
+    TrackResult,
+)
 
 
 class Fed(NamedTuple):
@@ -14,37 +28,143 @@ class Fed(NamedTuple):
 
     stamp_ns: int
     T_world_cam: FloatArray
+    has_truth: bool
     result: TrackResult
 
 
-def feed(session: SlamSession, frame: Frame) -> Fed:
-    """Give one frame to the SLAM."""
-    return Fed(frame.stamp_ns, frame.T_world_cam, session.track(frame))
+class SlamRun:
+    """One SLAM run: frames go in one by one, in the end a record comes out.
+
+    In real time each frame waits until it is due; one that is late is fed all the same.
+    """
+
+    def __init__(self, session: SlamSession) -> None:
+        self._session = session
+        self._fed: list[Fed] = []
+        self._initialized = self._lost = False
+        self._history = FrameHistory(session.config.camera)
+        self._whole = WholeHistory(session.config.camera) if session.offline else None
+        self._contexts: dict[int, LossContext] = {}
+        self.pace = Pace() if session.sync == "realtime" else None
+        self.frames_dropped = 0
+        self.late_s: list[float] = []
+        """How late each frame was when it was fed, seconds; empty unless in real time."""
+
+    @property
+    def last(self) -> TrackResult:
+        """The answer to the last frame."""
+        return self._fed[-1].result
+
+    def feed(self, frame: Frame) -> TrackResult:
+        """Give one frame to the SLAM."""
+        self._session.wait_ready()
+        if self.pace is not None and not self._session.outcome:
+            self.late_s.append(self.pace.wait_for(frame.stamp_ns))
+        result = self._session.track(frame)
+        self._fed.append(Fed(frame.stamp_ns, frame.T_world_cam, frame.has_truth, result))
+        if self._whole is not None:
+            self._whole.add(frame)
+        elif not self._session.outcome or result.event:
+            self._history.add(frame, result)
+            self._note_loss(result)
+        return result
+
+    def finish(self) -> SlamRecord:
+        """End the run and put together the record of its frames, of which there must be at least one."""
+        final = self._session.finish()
+        results = [one.result for one in self._fed]
+        truth_known = np.array([one.has_truth for one in self._fed])
+        record = SlamRecord(
+            stamps_ns=np.array([one.stamp_ns for one in self._fed], dtype=np.int64),
+            T_world_cam=np.array([one.T_world_cam for one in self._fed]),
+            states=np.array([result.state for result in results], dtype=np.int64),
+            T_map_cam=np.array([result.T_map_cam for result in results]),
+            map_id=np.array([result.map_id for result in results], dtype=np.int64),
+            tracked_points=np.array([result.tracked_points for result in results], dtype=np.int64),
+            events=tuple(result.event for result in results),
+            final=final,
+            has_truth=None if truth_known.all() else truth_known,
+            outcome=self._session.outcome,
+            failure=self._session.failure,
+            log_tail=self._session.log_tail() if self._session.outcome else "",
+            contexts=self._contexts,
+            lockstep_overruns=self._session.lockstep_overruns,
+            frames_dropped=self.frames_dropped,
+        )
+        return record if self._whole is None else _with_states_of(record, final, self._whole)
+
+    def timing(self) -> dict[str, float]:
+        """What the run took on this computer, NaN where nothing was timed.
+
+        `track_ms_median`, `track_ms_p95`: time of the SLAM for a frame; `lockstep_wait_s`: for its threads, in all;
+        `late_ms_median`, `late_ms_max`: how late frames were fed in real time.
+        """
+        track_ms, late_ms = 1e3 * np.array(self._session.track_s), 1e3 * np.array(self.late_s)
+        return {
+            "track_ms_median": float(np.median(track_ms)) if len(track_ms) else np.nan,
+            "track_ms_p95": float(np.percentile(track_ms, 95)) if len(track_ms) else np.nan,
+            "lockstep_wait_s": self._session.lockstep_wait_s,
+            "late_ms_median": float(np.median(late_ms)) if len(late_ms) else np.nan,
+            "late_ms_max": float(late_ms.max()) if len(late_ms) else np.nan,
+        }
+
+    def _note_loss(self, result: TrackResult) -> None:
+        """At the first frame of a loss, note what was seen: only now are the images at hand."""
+        ok = result.state is TrackingState.OK
+        if not ok and self._initialized and not self._lost:
+            context = self._history.context()
+            if outcome := self._session.outcome:
+                context = replace(context, cause=outcome, explanation=f"the SLAM is gone: {self._session.failure}")
+            self._contexts[len(self._fed) - 1] = context
+        self._initialized |= ok
+        self._lost = not ok
 
 
-def finish(session: SlamSession, fed: Sequence[Fed]) -> SlamRecord:
-    """End the run and put together the record of its frames, of which there must be at least one."""
-    final: SlamTrajectory = session.finish()
-    results = [one.result for one in fed]
-    return SlamRecord(
-        stamps_ns=np.array([one.stamp_ns for one in fed], dtype=np.int64),
-        T_world_cam=np.array([one.T_world_cam for one in fed]),
-        states=np.array([result.state for result in results], dtype=np.int64),
-        T_map_cam=np.array([result.T_map_cam for result in results]),
-        map_id=np.array([result.map_id for result in results], dtype=np.int64),
-        tracked_points=np.array([result.tracked_points for result in results], dtype=np.int64),
-        events=tuple(result.event for result in results),
-        final=final,
-        outcome=session.outcome,
-        lockstep_overruns=session.lockstep_overruns,
+def run_sequence(run: SlamRun, frames: Iterable[Frame]) -> SlamRecord:
+    """Feed a whole sequence, in order. In real time a frame is dropped when the next one is due before it could be fed.
+
+    When the SLAM is gone, the frames that are left count as not tracked.
+    """
+    for frame, following in _with_next(frames):
+        if run.pace is not None and following is not None and run.late_s and run.pace.late_s(following.stamp_ns) >= 0:
+            run.frames_dropped += 1
+        else:
+            run.feed(frame)
+    return run.finish()
+
+
+def _with_next(frames: Iterable[Frame]) -> Iterator[tuple[Frame, Frame | None]]:
+    before: Frame | None = None
+    for frame in frames:
+        if before is not None:
+            yield before, frame
+        before = frame
+    if before is not None:
+        yield before, None
+
+
+def _with_states_of(record: SlamRecord, final: SlamTrajectory, history: WholeHistory) -> SlamRecord:
+    """The record of an offline backend: a frame was tracked when the final trajectory has a pose at its stamp."""
+    tracked: BoolArray = np.isin(record.stamps_ns, final.stamps_ns)
+    map_id = np.full(len(tracked), -1, dtype=np.int64)
+    map_id[tracked] = final.map_id[np.searchsorted(final.stamps_ns, record.stamps_ns[tracked])]
+    states = np.where(tracked, TrackingState.OK, TrackingState.LOST).astype(np.int64)
+    states[~np.logical_or.accumulate(tracked)] = TrackingState.NOT_INITIALIZED
+    return replace(
+        record,
+        states=states,
+        map_id=map_id,
+        events=_events(tracked),
+        contexts={start: history.context(start, tracked) for start, _ in untracked_runs(tracked)},
     )
 
 
-def run_sequence(session: SlamSession, frames: Iterable[Frame]) -> SlamRecord:
-    """Feed a whole sequence, in order, until its end or that of the SLAM."""
-    fed: list[Fed] = []
-    for frame in frames:
-        fed.append(feed(session, frame))
-        if session.outcome:
-            break
-    return finish(session, fed)
+def _events(tracked: BoolArray) -> tuple[SlamEvent, ...]:
+    events = [SlamEvent.NONE] * len(tracked)
+    if tracked.any():
+        events[int(np.argmax(tracked))] = SlamEvent.INITIALIZED
+    for start, after in untracked_runs(tracked):
+        events[start] = SlamEvent.LOST
+        if after < len(tracked):
+            events[after] = SlamEvent.RELOCALIZED
+    return tuple(events)

@@ -1,31 +1,53 @@
-"""A SLAM run as the user's process sees it. Whatever the SLAM does, the user's program goes on."""
+"""A SLAM run as the user's process sees it. Whatever the SLAM does, the user's program goes on.
+
+How the frames reach the SLAM is the `sync`; what each means for a result:
+
+- "lockstep": the next frame waits until the SLAM's threads only idle, so how fast the computer is hardly matters. For
+  results that others should be able to repeat.
+- "realtime": frames come by the wall clock, as from a camera. Those that come while the SLAM is busy are dropped (when
+  a recorded sequence is replayed; in a live drive they wait, and how late they were is told). The result is that of
+  this SLAM on this computer under its present load.
+- "free": each frame follows as soon as the SLAM has answered the last one. Its threads may lag behind as they never
+  would with a camera, or get more time: quick, and good for nothing but a first look.
+"""
 
 import os
 import tempfile
 import time
-from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, Literal, Self
 
 import numpy as np
 
 from slamgym.errors import SlamgymError
-from slamgym.slam.backend import BACKENDS, SlamConfig, check_config, load_backend, untracked
+from slamgym.slam.backend import SlamConfig, backend_target, check_config, load_backend, untracked
 from slamgym.slam.frame_buffer import FrameBuffer
 from slamgym.slam.idle import check_lockstep_possible, wait_until_idle
-from slamgym.slam.process import WorkerProcess
-from slamgym.slam.worker import Reply
+from slamgym.slam.process import Outcome, WorkerLost, WorkerProcess
+from slamgym.slam.scratch import ScratchFolder
 from slamgym.types import Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
-Sync = Literal["lockstep", "free"]
+Sync = Literal["lockstep", "realtime", "free"]
 
 LOCKSTEP_LIMIT_S = 5.0
 """Longest wait for the SLAM's threads after one frame."""
 
-START_FINISH_TIMEOUT_S = 120.0
-"""Loading a large vocabulary or a last bundle adjustment may take this long."""
-
+TAIL_LINES = 15
+LOG_LINES = 100_000
+"""More than `slam.log` needs: the last MiB is all that is kept of it."""
 _TAIL_BYTES = 2**20
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a SLAM may take before it is ended. frame_s: time for a frame. finish_s: time to load, and time to end, with
+    a last bundle adjustment, or the whole work of an offline backend. memory_mb: memory.
+    """
+
+    frame_s: float = 20.0
+    finish_s: float = 120.0
+    memory_mb: float = 8000.0
 
 
 class SlamSession:
@@ -33,10 +55,11 @@ class SlamSession:
 
     Raises ConfigError or SlamError at once when the backend cannot honour the configuration. `start` may be called long
     before the first frame, so that the SLAM loads while something else goes on. After a crash, a Python error of the
-    backend, or no answer within `timeout_s` seconds, `outcome` says "crashed" or "timeout" and `track` answers LOST.
+    backend, too much memory, or no answer in time, `outcome` says "crashed" or "timeout", `failure` what happened, and
+    `track` answers LOST.
 
-    sync: "lockstep" lets the SLAM's threads finish after each frame, "free" feeds the next frame as soon as the SLAM
-    has answered. log_path: file for what the SLAM prints, overwritten; None keeps it in a temporary file.
+    sync: see above; pacing by the wall clock is up to who feeds the frames. log_path: file for what the SLAM prints,
+    overwritten; None keeps it in a temporary file.
     """
 
     def __init__(
@@ -44,7 +67,7 @@ class SlamSession:
         backend: str,
         config: SlamConfig,
         sync: Sync = "lockstep",
-        timeout_s: float = 20.0,
+        limits: Limits = Limits(),  # noqa: B008  frozen
         log_path: Path | None = None,
     ) -> None:
         check_config(backend, config)
@@ -52,19 +75,24 @@ class SlamSession:
         self._lockstep = sync == "lockstep" and self._has_threads
         if self._lockstep:
             check_lockstep_possible()
-        self.backend = BACKENDS.get(backend, backend)
+        self.backend = backend_target(backend)
         """As "module:class": the worker does not know names that a user registered."""
-        self._config = config
-        self._timeout_s = timeout_s
+        self.offline = load_backend(backend).offline
+        self.sync: Sync = sync
+        self.config = config
+        self._limits = limits
         self._log_path = log_path
         self._log: IO[bytes] | None = None
         self._frames: FrameBuffer | None = None
+        self._scratch: ScratchFolder | None = None
         self._worker: WorkerProcess | None = None
         self._ready = False
         self._told = False
         self.outcome: Literal["", "crashed", "timeout"] = ""
-        self.frames_tracked = 0
-        """Frames that the SLAM answered."""
+        self.failure = ""
+        """What happened, in one line, when there is an outcome."""
+        self.track_s: list[float] = []
+        """Time that the SLAM took for each frame that it answered, without the wait for its threads."""
         self.lockstep_wait_s = 0.0
         """Time spent waiting for the SLAM's threads, over all frames."""
         self.lockstep_overruns = 0
@@ -80,31 +108,33 @@ class SlamSession:
         if self._worker is not None:
             return
         self._log = self._log_path.open("w+b") if self._log_path else tempfile.TemporaryFile()  # noqa: SIM115
-        self._frames = FrameBuffer(self._config.camera)
-        self._worker = WorkerProcess(self._frames.fd, self._log)
-        with suppress(ConnectionError):  # waiting for the answer will tell
-            self._worker.send("start", self.backend, self._config)
+        self._frames = FrameBuffer(self.config.camera)
+        self._scratch = ScratchFolder()
+        self._worker = WorkerProcess(self._frames.fd, self._log, self._scratch.path, self._limits.memory_mb)
+        self._worker.send("start", self.backend, self.config)
 
     def wait_ready(self) -> None:
         """Block until the SLAM can take frames. Raises the SlamError of a backend that says what it lacks."""
         if self._ready or self.outcome:
             return
         self.start()
-        _, value = self._receive(START_FINISH_TIMEOUT_S)
+        error = self._receive(self._limits.finish_s, "while it loaded")
         self._ready = True
-        if isinstance(value, SlamgymError):
+        if isinstance(error, SlamgymError):
             self.close()
-            raise value
+            raise error
 
     def track(self, frame: Frame) -> TrackResult:
         """What the SLAM says about the next frame. Raises ConfigError when the images do not fit the camera."""
         self.wait_ready()
-        if self._frames is not None:
+        if self._frames is not None and not self.outcome:
             self._frames.write(frame)
-        result = self._ask(self._timeout_s, "track", frame.stamp_ns, frame.T_world_cam)
+        begin = time.monotonic()
+        moment = f"at frame {len(self.track_s)}"
+        result = self._ask(self._limits.frame_s, moment, "track", frame.stamp_ns, frame.T_world_cam)
         if not isinstance(result, TrackResult):
             return self._gone()
-        self.frames_tracked += 1
+        self.track_s.append(time.monotonic() - begin)
         if self._lockstep:
             self._wait_for_threads()
         return result
@@ -114,13 +144,13 @@ class SlamSession:
         self.wait_ready()
         if self._has_threads and self._worker is not None and not self.outcome:
             # What is still queued belongs to the run, and saving while threads work is a race.
-            wait_until_idle(self._worker.pid, START_FINISH_TIMEOUT_S)
-        trajectory = self._ask(START_FINISH_TIMEOUT_S, "finish")
+            wait_until_idle(self._worker.pid, self._limits.finish_s)
+        trajectory = self._ask(self._limits.finish_s, "when it was to end", "finish")
         if isinstance(trajectory, SlamTrajectory):
             return trajectory
         return SlamTrajectory(np.empty(0, np.int64), np.empty((0, 4, 4)), np.empty(0, np.int64))
 
-    def log_tail(self, lines: int = 15) -> str:
+    def log_tail(self, lines: int = TAIL_LINES) -> str:
         """The last lines that the SLAM printed; empty before `start` and after `close`."""
         if self._log is None or self._log.closed:
             return ""
@@ -135,6 +165,8 @@ class SlamSession:
             self._worker.kill()
         if self._frames is not None:
             self._frames.close()
+        if self._scratch is not None:
+            self._scratch.close()
         if self._log is not None:
             self._log.close()
 
@@ -144,30 +176,31 @@ class SlamSession:
     def __exit__(self, *exception: object) -> None:
         self.close()
 
-    def _ask(self, timeout_s: float, request: str, *arguments: Any) -> Any:
+    def _ask(self, timeout_s: float, moment: str, request: str, *arguments: Any) -> Any:
         """The answer, or None when the SLAM is gone."""
         if self.outcome or self._worker is None:
             return None
-        with suppress(ConnectionError):
-            self._worker.send(request, *arguments)
-        ok, value = self._receive(timeout_s)
-        return value if ok else None
+        self._worker.send(request, *arguments)
+        value = self._receive(timeout_s, moment)
+        return None if self.outcome else value
 
-    def _receive(self, timeout_s: float) -> Reply:
+    def _receive(self, timeout_s: float, moment: str) -> Any:
+        """What the worker answers, or what it failed with; `moment` says when, for `failure`."""
         assert self._worker is not None
         try:
-            reply = self._worker.receive(timeout_s)
-        except TimeoutError:
-            return self._lose("timeout")
-        except ConnectionError:
-            return self._lose("crashed")
-        return reply if reply[0] else self._lose("crashed", reply[1])
+            ok, value = self._worker.receive(timeout_s)
+        except WorkerLost as lost:
+            self._lose(lost.outcome, f"{lost.why} {moment}")
+            return None
+        if not ok:
+            text = str(value).strip() or type(value).__name__
+            self._lose("crashed", f"{text.splitlines()[-1]} ({moment})")
+        return value
 
-    def _lose(self, outcome: Literal["crashed", "timeout"], reason: Any = None) -> Reply:
+    def _lose(self, outcome: Outcome, failure: str) -> None:
         assert self._worker is not None
-        self.outcome = outcome
+        self.outcome, self.failure = outcome, failure
         self._worker.kill()
-        return False, reason
 
     def _gone(self) -> TrackResult:
         event = SlamEvent.NONE if self._told else SlamEvent(self.outcome)

@@ -79,6 +79,7 @@ def test_tracking(poses):
         "completion_of_distance": shares.distance,
         "losses": [asdict(loss) for loss in losses],
         "time_to_first_loss_s": (stamps_ns[100] - stamps_ns[0]) * 1e-9,
+        "distance_to_first_loss_m": pytest.approx(np.linalg.norm(np.diff(ref_T[:101, :3, 3], axis=0), axis=1).sum()),
         **rates._asdict(),
     }
     assert (got["loss_count"], got["relocalized_count"]) == (3, 2)

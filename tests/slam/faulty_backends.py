@@ -3,6 +3,9 @@
 
 import ctypes
 import os
+import subprocess
+import sys
+import tempfile
 import threading
 import time
 
@@ -14,14 +17,17 @@ from slamgym.slam.backend import SlamConfig, untracked
 from slamgym.types import Frame, SlamTrajectory, TrackingState, TrackResult
 
 
-class NoOptions(BaseModel):
+class FaultOptions(BaseModel):
+    """fault_frame: the frame, counted from 1, that it misbehaves at."""
+
     model_config = ConfigDict(extra="forbid")
+    fault_frame: int = 3
 
 
 class Healthy:
     """Answers the mean grey value as its number of tracked points, so that tests see which frame it got."""
 
-    Options = NoOptions
+    Options = FaultOptions
     loop_closures = (False,)
     has_background_threads = False
     offline = False
@@ -36,10 +42,11 @@ class Healthy:
 
     def __init__(self, config: SlamConfig) -> None:
         self.stamps_ns: list[int] = []
+        self.fault_frame = FaultOptions(**config.options).fault_frame
 
     def track(self, frame: Frame) -> TrackResult:
         self.stamps_ns.append(frame.stamp_ns)
-        if len(self.stamps_ns) == 3:
+        if len(self.stamps_ns) == self.fault_frame:
             self.misbehave()
         return TrackResult(TrackingState.OK, np.eye(4), 0, int(frame.rgb.mean()))
 
@@ -61,6 +68,41 @@ class HoldsGil(Healthy):
 
     def misbehave(self) -> None:
         ctypes.PyDLL(None).sleep(1_000_000)
+
+
+class Spins(Healthy):
+    def misbehave(self) -> None:
+        while True:
+            pass
+
+
+class Segfaults(Healthy):
+    def misbehave(self) -> None:
+        ctypes.string_at(0)
+
+
+class GrowsMemory(Healthy):
+    """10 MB a time, without an end."""
+
+    def misbehave(self) -> None:
+        hoard = []
+        while True:
+            hoard.append(b"x" * 10_000_000)
+            time.sleep(0.002)
+
+
+class LeavesChildren(Healthy):
+    """Starts a program that starts another, and hangs."""
+
+    def misbehave(self) -> None:
+        subprocess.Popen([sys.executable, "-c", "import subprocess; subprocess.run(['sleep', '1000'])"])
+        time.sleep(1e6)
+
+
+class LeavesFiles(Healthy):
+    def misbehave(self) -> None:
+        tempfile.mkdtemp()
+        os.abort()
 
 
 class Aborts(Healthy):
@@ -121,6 +163,12 @@ class AbortsAtFinish(Healthy):
         os.abort()
 
 
+class HangsAtFinish(Healthy):
+    def finish(self) -> SlamTrajectory:
+        time.sleep(1e6)
+        raise AssertionError
+
+
 class WorksBehind(Healthy):
     """A thread of its own works for 0.1 s after each frame."""
 
@@ -162,3 +210,34 @@ class LosesEveryThird(Healthy):
     def track(self, frame: Frame) -> TrackResult:
         result = super().track(frame)
         return untracked(TrackingState.LOST) if len(self.stamps_ns) % 3 == 0 else result
+
+
+class Slow(Healthy):
+    """Takes 0.1 s for a frame."""
+
+    def track(self, frame: Frame) -> TrackResult:
+        time.sleep(0.1)
+        return super().track(frame)
+
+
+class LostForThree(Healthy):
+    """Lost from the fault's frame on, for three frames."""
+
+    def track(self, frame: Frame) -> TrackResult:
+        result = super().track(frame)
+        lost = self.fault_frame <= len(self.stamps_ns) < self.fault_frame + 3
+        return untracked(TrackingState.LOST) if lost else result
+
+
+class Offline(Healthy):
+    """Answers only at the end, with poses for all frames but the first and the third."""
+
+    offline = True
+
+    def track(self, frame: Frame) -> TrackResult:
+        super().track(frame)
+        return untracked(TrackingState.NOT_INITIALIZED)
+
+    def finish(self) -> SlamTrajectory:
+        self.stamps_ns = [stamp for k, stamp in enumerate(self.stamps_ns) if k not in (0, 2)]
+        return super().finish()

@@ -7,6 +7,8 @@ import pytest
 from slamgym.errors import ConfigError, SlamError
 from slamgym.slam.backend import BACKENDS, check_config, load_backend, parse_options
 from slamgym.slam.orbslam3 import OrbSlam3Options
+from slamgym.slam.session import SlamSession
+from slamgym.types import SlamEvent
 
 
 @pytest.mark.parametrize("name", BACKENDS)
@@ -53,10 +55,24 @@ def test_bad_option(options, message):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("loop_closure", [True, False])
-def test_loop_closure_of_a_slam_that_has_none(config, loop_closure):
-    with pytest.raises(ConfigError, match="'groundtruth' closes no loops"):
-        check_config("groundtruth", replace(config, loop_closure=loop_closure))
+def test_loop_closure_of_a_slam_that_has_none(config):
+    check_config("groundtruth", replace(config, loop_closure=False))
+    with pytest.raises(ConfigError, match="'groundtruth': expected loop_closure as one of None, False, got True"):
+        check_config("groundtruth", replace(config, loop_closure=True))
+
+
+def test_installed_package_adds_a_backend(tmp_path, monkeypatch, config, frame):
+    """As pip leaves it: a module, and its entry points in a folder beside it."""
+    (tmp_path / "my_slam.py").write_text("from slamgym.slam.groundtruth import GroundTruth as MySlam\n")
+    info = tmp_path / "my_slam-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: my-slam\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text("[slamgym.slam_backends]\nmine = my_slam:MySlam\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    with SlamSession("mine", config) as session:
+        assert session.track(frame(3)).event is SlamEvent.INITIALIZED
+    with pytest.raises(ConfigError, match="did you mean 'mine'"):
+        load_backend("mien")
 
 
 def test_missing_vocabulary_is_seen_before_anything_starts(config, tmp_path):

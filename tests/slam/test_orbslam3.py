@@ -16,7 +16,8 @@ from slamgym.camera import PinholeCamera
 from slamgym.eval.accuracy import ate
 from slamgym.eval.trajectories import read_tum
 from slamgym.slam.backend import SlamConfig
-from slamgym.slam.orbslam3 import OrbSlam3Options, read_saved, settings
+from slamgym.slam.orb_settings import settings
+from slamgym.slam.orbslam3 import OrbSlam3Options, read_saved
 from slamgym.slam.session import SlamSession
 from slamgym.types import Frame, SlamEvent, TrackingState
 
@@ -75,7 +76,7 @@ def run(frames, config=CONFIG):
         online = [session.track(frame) for frame in frames]
         final = session.finish()
         assert session.outcome == "", session.log_tail()
-        assert session.frames_tracked == len(frames)
+        assert len(session.track_s) == len(frames)
     return online, final, {frame.stamp_ns: frame.T_world_cam for frame in frames}
 
 

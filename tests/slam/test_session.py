@@ -3,17 +3,23 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from slamgym.errors import ConfigError, SlamError
 from slamgym.slam import session as session_module
+from slamgym.slam.memory import resident_mb
 from slamgym.slam.process import WorkerProcess
-from slamgym.slam.session import SlamSession
+from slamgym.slam.scratch import ScratchFolder
+from slamgym.slam.session import Limits, SlamSession
 from slamgym.types import SlamEvent, TrackingState
+
+PIPES: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
 
 
 def is_alive(pid: int) -> bool:
@@ -36,7 +42,7 @@ def test_healthy_run(faulty, config, frame):
         final = session.finish()
     assert [r.tracked_points for r in results] == list(range(10))  # each frame's own image arrived
     assert final.stamps_ns.tolist() == list(range(10))
-    assert (session.outcome, session.frames_tracked) == ("", 10)
+    assert (session.outcome, len(session.track_s)) == ("", 10)
 
 
 def test_groundtruth_is_relative_to_the_first_frame(config, frame):
@@ -54,26 +60,28 @@ def test_groundtruth_without_frames(config):
 
 
 @pytest.mark.parametrize(
-    ("backend", "outcome"),
+    ("backend", "outcome", "failure"),
     [
-        ("Sleeps", "timeout"),
-        ("HoldsGil", "timeout"),
-        ("Aborts", "crashed"),
-        ("Exits", "crashed"),
-        ("Raises", "crashed"),
-        ("RaisesOwnError", "crashed"),
+        ("Sleeps", "timeout", "no answer within 0.5 s at frame 2"),
+        ("HoldsGil", "timeout", "no answer within 0.5 s at frame 2"),
+        ("Aborts", "crashed", "its process was ended by signal 6 (Aborted) at frame 2"),
+        ("Segfaults", "crashed", "its process was ended by signal 11 (Segmentation fault) at frame 2"),
+        ("Exits", "crashed", "its process ended with exit code 0 at frame 2"),
+        ("Raises", "crashed", "ValueError: the third frame is one too many (at frame 2)"),
+        ("RaisesOwnError", "crashed", "raised while tracking (at frame 2)"),
     ],
 )
-def test_fault_in_the_third_frame(faulty, config, frame, backend, outcome):
-    timeout_s = 0.5 if outcome == "timeout" else 30.0
-    with SlamSession(faulty(backend), config, timeout_s=timeout_s) as session:
+def test_fault_in_the_third_frame(faulty, config, frame, backend, outcome, failure):
+    limits = Limits(frame_s=0.5 if outcome == "timeout" else 30.0)
+    with SlamSession(faulty(backend), config, limits=limits) as session:
         results = [session.track(frame(k)) for k in range(5)]
         final = session.finish()
         assert wait_until_gone(session.pid)
     assert [r.state for r in results] == [TrackingState.OK] * 2 + [TrackingState.LOST] * 3
     assert [r.event for r in results] == ["", "", outcome, "", ""]
     assert all(np.isnan(r.T_map_cam).all() and r.map_id == -1 for r in results[2:])
-    assert (session.outcome, session.frames_tracked, len(final.stamps_ns)) == (outcome, 2, 0)
+    assert (session.outcome, len(session.track_s), len(final.stamps_ns)) == (outcome, 2, 0)
+    assert session.failure == failure
 
 
 def test_log_tells_why_it_crashed(faulty, config, frame, tmp_path):
@@ -82,6 +90,67 @@ def test_log_tells_why_it_crashed(faulty, config, frame, tmp_path):
             session.track(frame(k))
         assert "ValueError: the third frame is one too many" in session.log_tail(3)
     assert "the third frame is one too many" in (tmp_path / "slam.log").read_text()
+
+
+def test_growing_memory_is_stopped_at_its_limit(faulty, config, frame):
+    with SlamSession(faulty("GrowsMemory"), config, limits=Limits(memory_mb=300)) as session:
+        results = [session.track(frame(k)) for k in range(4)]
+    assert [r.event for r in results] == ["", "", SlamEvent.CRASHED, ""]
+    used_mb = re.fullmatch(
+        r"it took (\d+) MB of memory, more than its limit of 300 MB at frame 2", session.failure
+    )
+    # 10 MB every 2 ms, looked at every 50 ms.
+    assert 300 < int(used_mb[1]) < 1500
+
+
+def test_programs_that_the_slam_started_end_with_it(faulty, config, frame, children):
+    before = children()
+    with SlamSession(faulty("LeavesChildren"), config, limits=Limits(frame_s=1.5)) as session:
+        for k in range(2):
+            session.track(frame(k))
+        running = children() - before
+        session.track(frame(2))
+        assert session.outcome == "timeout"
+        assert children() == before
+    assert len(running) == 1
+
+
+def test_memory_counts_the_programs_that_the_slam_started():
+    alone = resident_mb(os.getpid())
+    child = subprocess.Popen([sys.executable, "-c", "x = b'x' * 100_000_000; print(flush=True); input()"], **PIPES)
+    with child:
+        child.stdout.readline()
+        with_child = resident_mb(os.getpid())
+        child.kill()
+    assert alone > 10
+    assert 90 < with_child - alone < 200
+    assert resident_mb(child.pid) == 0
+
+
+def test_temporary_files_of_a_crashed_slam_are_removed(faulty, config, frame, tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with SlamSession(faulty("LeavesFiles"), config) as session:
+        session.wait_ready()
+        (scratch,) = tmp_path.iterdir()
+        for k in range(3):
+            session.track(frame(k))
+        assert len(list(scratch.iterdir())) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_scratch_of_a_killed_program_is_removed_by_the_next_and_that_of_a_live_one_kept(tmp_path, monkeypatch):
+    program = "from slamgym.slam.scratch import ScratchFolder; x = ScratchFolder(); print(x.path, flush=True); input()"
+    env = os.environ | {"TMPDIR": str(tmp_path)}
+    with subprocess.Popen([sys.executable, "-c", program], env=env, **PIPES) as other:
+        folder = Path(other.stdout.readline().decode().strip())
+        old = time.time() - 3600
+        os.utime(folder, (old, old))
+        monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+        ScratchFolder().close()
+        assert folder.is_dir()
+        other.kill()
+    ScratchFolder().close()
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_chatter_does_not_block(faulty, config, frame, tmp_path):
@@ -140,11 +209,18 @@ def test_crash_at_start_is_an_outcome(faulty, config, frame):
         assert [session.track(frame(k)).event for k in range(2)] == [SlamEvent.CRASHED, SlamEvent.NONE]
 
 
-def test_crash_at_finish_is_an_outcome(faulty, config, frame):
-    with SlamSession(faulty("AbortsAtFinish"), config) as session:
+@pytest.mark.parametrize(
+    ("backend", "outcome", "failure"),
+    [
+        ("AbortsAtFinish", "crashed", "its process was ended by signal 6 (Aborted) when it was to end"),
+        ("HangsAtFinish", "timeout", "no answer within 1.5 s when it was to end"),
+    ],
+)
+def test_fault_at_finish_is_an_outcome(faulty, config, frame, backend, outcome, failure):
+    with SlamSession(faulty(backend), config, limits=Limits(finish_s=1.5)) as session:
         session.track(frame(0))
         assert len(session.finish().stamps_ns) == 0
-        assert session.outcome == "crashed"
+        assert (session.outcome, session.failure) == (outcome, failure)
 
 
 def test_frame_of_another_size_is_refused(faulty, config, frame):

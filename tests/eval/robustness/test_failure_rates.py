@@ -4,6 +4,7 @@ import pytest
 from slamgym.errors import ConfigError
 from slamgym.eval.robustness import (
     Exposure,
+    cause_counts,
     evaluated_frames,
     exposure,
     failure_rates,
@@ -11,7 +12,7 @@ from slamgym.eval.robustness import (
     status_counts,
     total_exposure,
 )
-from slamgym.types import LossEvent
+from slamgym.types import LossContext, LossEvent
 
 NAN = pytest.approx(np.nan, nan_ok=True)
 
@@ -74,3 +75,10 @@ def test_statuses_are_counted_in_a_fixed_order():
 def test_an_unknown_status_is_refused():
     with pytest.raises(ConfigError, match="did you mean 'crashed'"):
         status_counts(["ok", "crash"])
+
+
+def test_causes_are_counted_the_most_frequent_first():
+    causes = ["dark", "rotation", "unknown", "rotation"]
+    losses = [LossEvent(0, 0, 0.0, 0.0, 0.0, 0.0, "never", LossContext(*[0.0] * 14, cause=cause)) for cause in causes]
+    assert list(cause_counts([*losses, loss(1.0, "never")]).items()) == [("rotation", 2), ("dark", 1), ("unknown", 1)]
+    assert cause_counts([]) == {}

@@ -1,7 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from slamgym.errors import ConfigError
 from slamgym.eval.robustness import (
+    MAP_POLICIES,
     estimate_by_frame,
     evaluated_frames,
     final_by_frame,
@@ -9,8 +13,9 @@ from slamgym.eval.robustness import (
     is_success,
     most_frequent_map,
     status,
+    true_poses,
 )
-from slamgym.types import SlamEvent
+from slamgym.types import LossContext, SlamEvent
 
 
 def share(frames):
@@ -123,3 +128,53 @@ def test_final_poses_are_matched_by_exact_stamp_and_guesses_left_out(make_record
     assert maps.tolist() == [0, -1, -1, -1, 0]
     np.testing.assert_array_equal(np.isfinite(T).all(axis=(1, 2)), maps >= 0)
     np.testing.assert_allclose(T[4], record.final.T_map_cam[3])
+
+
+@pytest.mark.parametrize(
+    ("online", "final", "largest", "first", "each"),
+    [
+        ("....", None, "....", "....", "...."),
+        ("..0000", None, "..TTTT", "..TTTT", "..TTTT"),
+        ("00x111x2", None, "...TTT..", "TT......", "TT.TTT.T"),
+        ("00x111x2", "11.111.2", "TT.TTT..", "TT.TTT..", "TT.TTT.T"),  # merged into the second
+        ("00x111x22", "...111.22", "...TTT...", "...TTT...", "...TTT.TT"),  # the first map was taken back
+        ("00x111x0", None, "TT.....T", "TT.....T", "TT.TTT.T"),  # a tie: the first
+    ],
+)
+def test_frames_in_the_maps_of_a_policy(make_record, online, final, largest, first, each):
+    record = make_record(online, final)
+    for policy, expected in zip(MAP_POLICIES, (largest, first, each), strict=True):
+        assert "".join("T" if frame else "." for frame in evaluated_frames(record, policy)) == expected
+
+
+def test_an_unknown_map_policy_is_refused(make_record):
+    with pytest.raises(ConfigError, match=r"did you mean 'each'\? Valid: each, first, largest"):
+        evaluated_frames(make_record("00"), "eachh")
+
+
+def test_a_loss_bears_the_context_of_its_first_frame(make_record):
+    seen = LossContext(*[0.0] * 14, cause="dark")
+    record = replace(make_record("00x0xx"), contexts={4: seen})
+    assert [loss.context for loss in find_losses(record)] == [None, seen]
+
+
+def test_true_poses_that_are_not_known_are_filled_but_not_judged_by(make_record):
+    record = make_record("000000")
+    before = record.T_world_cam.copy()
+    T = before.copy()
+    T[[0, 2, 3]] = np.nan
+    filled, real = true_poses(replace(record, T_world_cam=T, has_truth=np.array([1, 1, 1, 1, 0, 1], dtype=np.bool_)))
+    assert real.tolist() == [False, True, False, False, False, True]
+    np.testing.assert_allclose(filled[[0, 1, 4, 5]], before[[1, 1, 4, 5]], atol=1e-12)
+    # A third of the way from frame 1 to frame 4.
+    np.testing.assert_allclose(filled[2, :3, 3], before[1, :3, 3] + (before[4, :3, 3] - before[1, :3, 3]) / 3)
+    none, real = true_poses(replace(record, T_world_cam=np.full_like(T, np.nan)))
+    assert none is None
+    assert not real.any()
+
+
+def test_without_a_truth_a_loss_has_a_duration_only(make_record):
+    record = make_record("00xx0")
+    (loss,) = find_losses(replace(record, T_world_cam=np.full_like(record.T_world_cam, np.nan)))
+    assert (loss.start_frame, loss.end_frame, loss.duration_s) == (2, 3, pytest.approx(0.2))
+    assert np.isnan([loss.distance_m, loss.rotation_deg]).all()
