@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow check bench format setup clean system-libraries
+.PHONY: demo test test-slow test-faults check bench format setup clean system-libraries
 
 demo: setup
 	$(BIN)/python examples/speed_sweep.py
@@ -14,6 +14,9 @@ test: setup
 
 test-slow: setup
 	$(BIN)/python -m pytest -m slow $(PYTEST_ARGS)
+
+test-faults: setup
+	$(BIN)/python -m pytest -m faults $(PYTEST_ARGS)
 
 check: setup
 	$(BIN)/ruff check .

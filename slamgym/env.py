@@ -44,8 +44,8 @@ def load_house(scene: str, lighting: str) -> tuple[House, OccupancyGrid, NDArray
 class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
     """A differential-drive robot follows a planned path; one step is one camera frame.
 
-    Keywords: the fields of `DriveParams`, and `render_mode`. `gym.make` also passes the fields of `SlamInLoopParams` when a
-    SLAM is in the loop; they are kept in `slam_params` for `SlamWrapper`.
+    Keywords: the fields of `DriveParams`, and `render_mode`. `gym.make` also passes the fields of `SlamInLoopParams`
+    when a SLAM is in the loop; they are kept in `slam_params` for `SlamWrapper`.
 
     Action: Box(2) in [-1, 1]: forward speed (below 0: reverse) and turn rate (above 0: left), scaled by the parameters.
     Observation: `rgb` uint8 (H, W, 3), `depth` float32 (H, W) in metres along the optical axis with 0 = no measurement,

@@ -67,8 +67,8 @@ class SlamParams(Params):
     slam: str = Field("orbslam3", description="SLAM backend, or 'module:class' of your own")
     slam_sync: Sync = Field(
         "lockstep",
-        description="lockstep: wait after each frame until the SLAM idles; realtime: feed by the wall clock; free: feed "
-        "at full speed",
+        description="lockstep: wait after each frame until the SLAM idles; realtime: feed by the wall clock; "
+        "free: feed at full speed",
     )
     stride: int = Field(0, ge=0, description="frames left out between two that the SLAM sees")
     loop_closure: bool | None = Field(None, description="loop closing on or off; None: the backend's default")

@@ -38,10 +38,14 @@ class Replay:
         return self.sequence.truth
 
     def motion(self) -> dict[str, Any]:
-        """How the camera moved, columns with a row a frame of the sequence; speeds are those since the frame before."""
+        """How the camera moved, columns with a row a frame of the sequence; speeds are those since the frame before.
+
+        NaN without a truth.
+        """
         sequence = self.sequence
         step_s = np.diff(sequence.stamps_ns) * 1e-9
-        step_m, step_rad = step_sizes(sequence.T_world_cam)
+        unknown = np.full(len(step_s), np.nan)
+        step_m, step_rad = (unknown, unknown) if sequence.truth is None else step_sizes(sequence.T_world_cam)
         position = sequence.T_world_cam[:, :3, 3]
         return {
             "stamp_ns": sequence.stamps_ns,

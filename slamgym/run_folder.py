@@ -132,9 +132,7 @@ def _poses(trajectory: str, stamps_ns: IntArray, T_map_cam: FloatArray, map_id: 
     T_map_cam = T_map_cam[known]
     values = np.hstack([T_map_cam[:, :3, 3], quaternion_xyzw(T_map_cam)])
     columns = dict(zip(("x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"), values.T, strict=True))
-    return pd.DataFrame(
-        {"trajectory": trajectory, "stamp_ns": stamps_ns[known], "map_id": map_id[known], **columns}
-    )
+    return pd.DataFrame({"trajectory": trajectory, "stamp_ns": stamps_ns[known], "map_id": map_id[known], **columns})
 
 
 def _slam_table(record: SlamRecord) -> pd.DataFrame:

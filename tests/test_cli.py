@@ -15,8 +15,8 @@ from slamgym.cli import main
 
 FAST = ["--camera", "small", "--path-length-m", "1.5", "--speed", "0.5"]
 FILES = {
-    "config.yaml", "episode.json", "groundtruth.txt", "estimate.txt", "fed_frames.txt", "frames.csv", "poses.csv", "map.png",
-    "slam.log",
+    "config.yaml", "episode.json", "groundtruth.txt", "estimate.txt", "fed_frames.txt", "frames.csv", "poses.csv",
+    "map.png", "slam.log",
 }  # fmt: skip
 
 

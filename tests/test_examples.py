@@ -9,6 +9,7 @@ SHORT = ["--path-length-m", "1.5"]
 ARGUMENTS = {
     "quickstart.py": [],
     "repeatability.py": [*SHORT, "--repeats", "2", "--busy-loops", "1", "--camera", "small", "--syncs", "free"],
+    "backends.py": [*SHORT, "--seeds", "1", "--speed", "1.0", "--camera", "small"],
     "views.py": [*SHORT, "--out", "OUT.png"],
     "speed_sweep.py": [*SHORT, "--speeds", "0.5", "1.0", "--out", "OUT"],
 }

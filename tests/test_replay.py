@@ -53,7 +53,7 @@ def test_a_replay_comes_to_what_the_live_drive_comes_to(recorded):
     env.close()
     again = replay(recorded[1], params(slam="groundtruth", stride=1))
     assert again.slam.stamps_ns.tolist() == live.slam.stamps_ns.tolist()
-    same = again.summary.keys() & live.summary.keys() - {"timing", "end", "distance_m"}
+    same = again.summary.keys() & live.summary.keys() - {"timing", "end", "distance_m", "map_results"}
     assert len(same) > 50
     for key in same:
         assert again.summary[key] == pytest.approx(live.summary[key], abs=1e-4, nan_ok=True), key
@@ -64,7 +64,8 @@ def test_one_rendering_serves_any_backend_and_stride(recorded):
     sequence = recorded[1]
     runs = [replay(sequence, params(slam="orbslam3", stride=stride, loop_closure=False)) for stride in (0, 3)]
     assert [run.summary["frames_fed"] for run in runs] == [len(sequence), -(-len(sequence) // 4)]
-    assert all(run.summary["status"] == "ok" and run.summary["ate_rmse_m"] < 0.03 for run in runs)
+    assert [run.summary["status"] for run in runs] == ["ok", "ok"]
+    assert max(run.summary["ate_rmse_m"] for run in runs) < 0.03
     assert runs[0].config["loop_closure"] is False
     assert runs[0].config["run"]["versions"].keys() == {"slamgym", "pyorbslam3", "vocabulary_sha256"}
 
@@ -128,3 +129,15 @@ def test_recording_needs_a_new_folder(tmp_path):
     with pytest.raises(OutputError, match="new or empty"):
         record_drive(env, PathFollower(), 7, tmp_path)
     env.close()
+
+
+def test_sequence_without_a_truth(recorded, tmp_path):
+    sequence = recorded[1]
+    unknown = np.full_like(sequence.T_world_cam, np.nan)
+    blind = replace(sequence, truth=None, T_world_cam=unknown, has_truth=np.zeros(len(sequence), bool))
+    done = replay(blind, params(slam="orbslam3", stride=1))
+    assert (done.summary["status"], done.summary["completion"]) == ("ok", 1.0)
+    assert np.isnan(done.summary["ate_rmse_m"])
+    folder = write_run(done, tmp_path / "run")
+    assert not (folder / "groundtruth.txt").exists()
+    assert len(pd.read_csv(folder / "frames.csv")) == len(sequence)

@@ -55,9 +55,7 @@ def find_losses(record: SlamRecord) -> list[LossEvent]:
     where that says nothing of it, by whether the map is still the one from before. The context is the record's.
     """
     gaps = find_gaps(record.stamps_ns, true_poses(record)[0], tracked_frames(record))
-    return [
-        replace(gap, outcome=_outcome(record, gap), context=record.contexts.get(gap.start_frame)) for gap in gaps
-    ]
+    return [replace(gap, outcome=_outcome(record, gap), context=record.contexts.get(gap.start_frame)) for gap in gaps]
 
 
 def _outcome(record: SlamRecord, gap: LossEvent) -> str:

@@ -4,7 +4,7 @@ import time
 
 
 class Pace:
-    """Runs from the first frame that it is asked about: a frame is due when as much time has passed as its stamp says."""
+    """Runs from the first frame that it is asked about; a frame is due when the time has passed that its stamp says."""
 
     def __init__(self) -> None:
         self._begin_s: float | None = None

@@ -18,12 +18,12 @@ from slamgym.slam.worker import Reply
 
 _KILL_WAIT_S = 5.0
 _LOOK_INTERVAL_S = 0.05
-"""Between two looks at the memory of a worker that is at work; it is ended before it has taken much more than it may."""
+"""Between two looks at the memory of a worker: it is ended before it has taken much more than it may."""
 
 Outcome = Literal["crashed", "timeout"]
 
 
-class WorkerLost(Exception):
+class WorkerLostError(Exception):
     """The worker cannot answer any more; `why` says in one line what happened."""
 
     def __init__(self, outcome: Outcome, why: str) -> None:
@@ -72,7 +72,7 @@ class WorkerProcess:
             self._connection.send((self._asked, request, *arguments))
 
     def receive(self, timeout_s: float) -> Reply:
-        """The answer to the last request; raises WorkerLost when there is none in time, or will never be one."""
+        """The answer to the last request; raises WorkerLostError when there is none in time, or will never be one."""
         deadline = time.monotonic() + timeout_s
         while (left_s := deadline - time.monotonic()) > 0:
             answered = self._connection.poll(min(left_s, _LOOK_INTERVAL_S))
@@ -82,11 +82,11 @@ class WorkerProcess:
             try:
                 number, ok, value = self._connection.recv()
             except (EOFError, OSError, UnpicklingError):
-                raise WorkerLost("crashed", self._how_it_ended()) from None
+                raise WorkerLostError("crashed", self._how_it_ended()) from None
             # Ctrl-C may have ended the wait for an earlier answer, which comes first now.
             if number == self._asked:
                 return ok, value
-        raise WorkerLost("timeout", f"no answer within {timeout_s:g} s")
+        raise WorkerLostError("timeout", f"no answer within {timeout_s:g} s")
 
     def _check_memory(self) -> None:
         if time.monotonic() < self._next_look:
@@ -95,7 +95,7 @@ class WorkerProcess:
         used_mb = resident_mb(self.pid)
         if used_mb > self._memory_limit_mb:
             limit = f"more than its limit of {self._memory_limit_mb:,.0f} MB"
-            raise WorkerLost("crashed", f"it took {used_mb:,.0f} MB of memory, {limit}")
+            raise WorkerLostError("crashed", f"it took {used_mb:,.0f} MB of memory, {limit}")
 
     def _how_it_ended(self) -> str:
         """Looked at without collecting the process: as long as it is not, nobody else gets its number."""

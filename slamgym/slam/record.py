@@ -14,6 +14,7 @@ from slamgym.types import (
     BoolArray,
     FloatArray,
     Frame,
+    IntArray,
     LossContext,
     SlamEvent,
     SlamRecord,
@@ -154,17 +155,18 @@ def _with_states_of(record: SlamRecord, final: SlamTrajectory, history: WholeHis
         record,
         states=states,
         map_id=map_id,
-        events=_events(tracked),
+        events=_events(tracked, map_id),
         contexts={start: history.context(start, tracked) for start, _ in untracked_runs(tracked)},
     )
 
 
-def _events(tracked: BoolArray) -> tuple[SlamEvent, ...]:
+def _events(tracked: BoolArray, map_id: IntArray) -> tuple[SlamEvent, ...]:
     events = [SlamEvent.NONE] * len(tracked)
     if tracked.any():
         events[int(np.argmax(tracked))] = SlamEvent.INITIALIZED
     for start, after in untracked_runs(tracked):
         events[start] = SlamEvent.LOST
         if after < len(tracked):
-            events[after] = SlamEvent.RELOCALIZED
+            same_map = map_id[start - 1] == map_id[after]
+            events[after] = SlamEvent.RELOCALIZED if same_map else SlamEvent.NEW_MAP
     return tuple(events)

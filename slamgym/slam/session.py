@@ -24,7 +24,7 @@ from slamgym.errors import SlamgymError
 from slamgym.slam.backend import SlamConfig, backend_target, check_config, load_backend, untracked
 from slamgym.slam.frame_buffer import FrameBuffer
 from slamgym.slam.idle import check_lockstep_possible, wait_until_idle
-from slamgym.slam.process import Outcome, WorkerLost, WorkerProcess
+from slamgym.slam.process import Outcome, WorkerLostError, WorkerProcess
 from slamgym.slam.scratch import ScratchFolder
 from slamgym.types import Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
@@ -67,7 +67,7 @@ class SlamSession:
         backend: str,
         config: SlamConfig,
         sync: Sync = "lockstep",
-        limits: Limits = Limits(),  # noqa: B008  frozen
+        limits: Limits = Limits(),
         log_path: Path | None = None,
     ) -> None:
         check_config(backend, config)
@@ -189,7 +189,7 @@ class SlamSession:
         assert self._worker is not None
         try:
             ok, value = self._worker.receive(timeout_s)
-        except WorkerLost as lost:
+        except WorkerLostError as lost:
             self._lose(lost.outcome, f"{lost.why} {moment}")
             return None
         if not ok:

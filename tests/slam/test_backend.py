@@ -10,15 +10,19 @@ from slamgym.slam.orbslam3 import OrbSlam3Options
 from slamgym.slam.session import SlamSession
 from slamgym.types import SlamEvent
 
+NOT_EVERYWHERE = {"command", "orbslam2"}
+"""They need a program or a library of the user's, see their own tests."""
+
 
 @pytest.mark.parametrize("name", BACKENDS)
 def test_every_backend_offers_what_the_protocol_asks(name, config):
     backend = load_backend(name)
-    assert backend.Options() is not None  # all options have defaults
     assert set(backend.loop_closures) <= {True, False}
     assert isinstance(backend.offline, bool)
     assert isinstance(backend.has_background_threads, bool)
-    check_config(name, config)
+    if name not in NOT_EVERYWHERE:
+        assert backend.Options() is not None  # all options have defaults
+        check_config(name, config)
 
 
 @pytest.mark.parametrize("name", BACKENDS)

@@ -121,6 +121,6 @@ def test_each_kind_of_fault(faulty, leftovers):
     run_faults(range(len(FAULTS)), faulty, leftovers)
 
 
-@pytest.mark.slow
+@pytest.mark.faults
 def test_200_faults(faulty, leftovers):
     run_faults(range(200), faulty, leftovers)

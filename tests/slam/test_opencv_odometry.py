@@ -12,7 +12,8 @@ from slamgym.errors import SlamError, TrajectoryWarning
 from slamgym.eval.accuracy import ate
 from slamgym.eval.datasets import read_sequence
 from slamgym.slam.backend import SlamConfig, check_config
-from slamgym.slam.opencv_odometry import Matcher, OpenCvOptions, condition, grey_jacobian
+from slamgym.slam.opencv_odometry import OpenCvOptions
+from slamgym.slam.rgbd_matcher import Matcher, condition, grey_jacobian
 from slamgym.slam.session import SlamSession
 from slamgym.types import Frame, SlamEvent, TrackingState
 

@@ -96,9 +96,7 @@ def test_growing_memory_is_stopped_at_its_limit(faulty, config, frame):
     with SlamSession(faulty("GrowsMemory"), config, limits=Limits(memory_mb=300)) as session:
         results = [session.track(frame(k)) for k in range(4)]
     assert [r.event for r in results] == ["", "", SlamEvent.CRASHED, ""]
-    used_mb = re.fullmatch(
-        r"it took (\d+) MB of memory, more than its limit of 300 MB at frame 2", session.failure
-    )
+    used_mb = re.fullmatch(r"it took (\d+) MB of memory, more than its limit of 300 MB at frame 2", session.failure)
     # 10 MB every 2 ms, looked at every 50 ms.
     assert 300 < int(used_mb[1]) < 1500
 
