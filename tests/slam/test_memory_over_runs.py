@@ -1,6 +1,7 @@
 """Memory of the user's process and of the SLAM's over many episodes of one environment."""
 
 import os
+import sys
 from pathlib import Path
 
 import gymnasium as gym
@@ -32,7 +33,7 @@ def test_100_episodes_in_one_process(capsys):
             worker_mb[number] = worker
     env.close()
     with capsys.disabled():
-        print(f"\nMB after {LOOK_AFTER} episodes: parent {parent_mb}, worker {worker_mb}")
+        sys.stdout.write(f"\nMB after {LOOK_AFTER} episodes: parent {parent_mb}, worker {worker_mb}\n")
     assert parent_mb[100] - parent_mb[10] < 30
     assert max(worker_mb.values()) < 1.3 * min(worker_mb.values())
 
