@@ -12,7 +12,6 @@ from slamgym.eval.episode import summarize_slam
 from slamgym.eval.trajectories import Trajectory, step_sizes
 from slamgym.params import SlamParams
 from slamgym.slam.record import SlamRun, run_sequence
-from slamgym.slam.session import LOG_LINES
 from slamgym.types import Frame, SlamRecord, Summary
 
 
@@ -69,7 +68,7 @@ def replay(sequence: Sequence, params: SlamParams, on_frame: Callable[[int], Non
         run = SlamRun(session)
         numbers = range(0, len(sequence), params.stride + 1)
         record = run_sequence(run, _told(read_ahead(sequence, numbers), on_frame))
-        log = session.log_tail(lines=LOG_LINES)
+        log = session.log()
     recorded = params.recorded(config)
     versions = {"slamgym": version("slamgym"), **recorded.pop("slam_versions")}
     return Replay(

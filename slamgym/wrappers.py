@@ -14,7 +14,7 @@ from slamgym.eval.episode import summarize_slam
 from slamgym.params import SlamInLoopParams
 from slamgym.slam.backend import check_config
 from slamgym.slam.record import SlamRun
-from slamgym.slam.session import LOG_LINES, SlamSession
+from slamgym.slam.session import SlamSession
 from slamgym.types import Frame, SlamEvent, SlamRecord, Summary, TrackingState
 
 
@@ -117,7 +117,7 @@ class SlamWrapper(
 
     def slam_log(self) -> str:
         """What the SLAM wrote to its standard output and error, the last MiB of it."""
-        return self._session.log_tail(lines=LOG_LINES) if self._session is not None else ""
+        return self._session.log() if self._session is not None else ""
 
     def close(self) -> None:
         for session in (self._session, self._next_session):

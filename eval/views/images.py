@@ -9,6 +9,9 @@ GreyImage = NDArray[np.uint8]
 FAST_THRESHOLD = 20
 """Grey levels that a corner differs from its surroundings; what ORB-SLAM tries first."""
 
+SMOOTHING_PX = 1.0
+"""Standard deviation of the smoothing, in pixels of half the size."""
+
 
 def keypoint_count(grey: GreyImage) -> int:
     """FAST corners of the full image, at FAST_THRESHOLD and with non-maximum suppression.
@@ -19,14 +22,27 @@ def keypoint_count(grey: GreyImage) -> int:
 
 
 def sharpness(grey: GreyImage) -> float:
-    """Variance of the Laplacian, grey levels squared. Blur lowers it, but so do dim light and bare walls.
+    """How abruptly the grey changes where it changes at all, 1/px^2; NaN for an image of one grey.
 
-    Pech-Pacheco et al., "Diatom autofocusing in brightfield microscopy: a comparative study", ICPR 2000.
+    Mean squared second difference, along the axis where that is smaller, over the mean squared gradient: energies of
+    Laplacian and gradient (Pertuz et al., "Analysis of focus measure operators for shape-from-focus", Pattern
+    Recognition 2013), put into a ratio, and one axis at a time. The ratio stays where light dims or a bare wall fills
+    the view, which lower the variance of the Laplacian just as blur does; and an axis at a time it sees the blur of a
+    turn, which leaves edges along the motion sharp. Taken at half the size and smoothed, so that noise of the sensor
+    does not pass for sharpness.
     """
-    _, deviation = cv2.meanStdDev(cv2.Laplacian(grey, cv2.CV_16S))
-    return float(deviation[0, 0] ** 2)
+    half = cv2.resize(grey, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA).astype(np.float32)
+    smooth = cv2.GaussianBlur(half, (0, 0), SMOOTHING_PX)
+    along_y, along_x = smooth[1:] - smooth[:-1], smooth[:, 1:] - smooth[:, :-1]
+    gradient = _mean_square(along_y) + _mean_square(along_x)
+    second = min(_mean_square(along_y[1:] - along_y[:-1]), _mean_square(along_x[:, 1:] - along_x[:, :-1]))
+    return second / gradient if gradient > 0 else np.nan
 
 
 def brightness(grey: GreyImage) -> float:
     """Mean grey level, 0 to 255."""
     return float(cv2.mean(grey)[0])
+
+
+def _mean_square(values: NDArray[np.float32]) -> float:
+    return float(np.mean(values * values))

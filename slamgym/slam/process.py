@@ -11,8 +11,9 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from pickle import UnpicklingError
-from typing import IO, Any, Literal
+from typing import Any, Literal
 
+from slamgym.slam.log_file import LogFile
 from slamgym.slam.memory import resident_mb
 from slamgym.slam.worker import Reply
 
@@ -52,7 +53,8 @@ class WorkerProcess:
     It is ended when it, with the programs that it started, takes more than `memory_limit_mb` of memory.
     """
 
-    def __init__(self, memory_fd: int, log: IO[bytes], scratch: Path, memory_limit_mb: float) -> None:
+    def __init__(self, memory_fd: int, log: LogFile, scratch: Path, memory_limit_mb: float) -> None:
+        self._log = log
         self._memory_limit_mb = memory_limit_mb
         ours, theirs = socket.socketpair()
         with theirs:
@@ -76,7 +78,7 @@ class WorkerProcess:
         deadline = time.monotonic() + timeout_s
         while (left_s := deadline - time.monotonic()) > 0:
             answered = self._connection.poll(min(left_s, _LOOK_INTERVAL_S))
-            self._check_memory()
+            self._look_after_it()
             if not answered:
                 continue
             try:
@@ -88,10 +90,12 @@ class WorkerProcess:
                 return ok, value
         raise WorkerLostError("timeout", f"no answer within {timeout_s:g} s")
 
-    def _check_memory(self) -> None:
+    def _look_after_it(self) -> None:
+        """Now and then: raises WorkerLostError when it takes too much memory, and keeps its log small."""
         if time.monotonic() < self._next_look:
             return
         self._next_look = time.monotonic() + _LOOK_INTERVAL_S
+        self._log.free_disk()
         used_mb = resident_mb(self.pid)
         if used_mb > self._memory_limit_mb:
             limit = f"more than its limit of {self._memory_limit_mb:,.0f} MB"
@@ -119,13 +123,13 @@ class WorkerProcess:
         self._connection.close()
 
 
-def _spawn(socket_fd: int, memory_fd: int, log: IO[bytes], scratch: Path) -> subprocess.Popen[bytes]:
+def _spawn(socket_fd: int, memory_fd: int, log: LogFile, scratch: Path) -> subprocess.Popen[bytes]:
     # A session of its own: Ctrl-C in the terminal is for the user's program, which then ends the worker and its group.
     return subprocess.Popen(
         [sys.executable, "-P", "-u", "-m", "slamgym.slam.worker", str(socket_fd), str(memory_fd), str(os.getpid())],
         stdin=subprocess.DEVNULL,
-        stdout=log,
-        stderr=log,
+        stdout=log.fileno(),
+        stderr=log.fileno(),
         pass_fds=(socket_fd, memory_fd),
         env=os.environ
         | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path), "TMPDIR": str(scratch)},

@@ -23,6 +23,8 @@ from slamgym.types import (
     TrackResult,
 )
 
+TAIL_LINES = 15
+
 
 class Fed(NamedTuple):
     """One frame's stamp and true pose, and what the SLAM said about it."""
@@ -87,7 +89,7 @@ class SlamRun:
             has_truth=None if truth_known.all() else truth_known,
             outcome=self._session.outcome,
             failure=self._session.failure,
-            log_tail=self._session.log_tail() if self._session.outcome else "",
+            log_tail=_last_lines(self._session.log()) if self._session.outcome else "",
             contexts=self._contexts,
             lockstep_overruns=self._session.lockstep_overruns,
             frames_dropped=self.frames_dropped,
@@ -119,6 +121,10 @@ class SlamRun:
             self._contexts[len(self._fed) - 1] = context
         self._initialized |= ok
         self._lost = not ok
+
+
+def _last_lines(text: str) -> str:
+    return "\n".join(text.splitlines()[-TAIL_LINES:])
 
 
 def run_sequence(run: SlamRun, frames: Iterable[Frame]) -> SlamRecord:

@@ -11,12 +11,9 @@ How the frames reach the SLAM is the `sync`; what each means for a result:
   would with a camera, or get more time: quick, and good for nothing but a first look.
 """
 
-import os
-import tempfile
 import time
 from dataclasses import dataclass
-from pathlib import Path
-from typing import IO, Any, Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 
@@ -24,6 +21,7 @@ from slamgym.errors import SlamgymError
 from slamgym.slam.backend import SlamConfig, backend_target, check_config, load_backend, untracked
 from slamgym.slam.frame_buffer import FrameBuffer
 from slamgym.slam.idle import check_lockstep_possible, wait_until_idle
+from slamgym.slam.log_file import LogFile
 from slamgym.slam.process import Outcome, WorkerLostError, WorkerProcess
 from slamgym.slam.scratch import ScratchFolder
 from slamgym.types import Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
@@ -32,11 +30,6 @@ Sync = Literal["lockstep", "realtime", "free"]
 
 LOCKSTEP_LIMIT_S = 5.0
 """Longest wait for the SLAM's threads after one frame."""
-
-TAIL_LINES = 15
-LOG_LINES = 100_000
-"""More than `slam.log` needs: the last MiB is all that is kept of it."""
-_TAIL_BYTES = 2**20
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +51,7 @@ class SlamSession:
     backend, too much memory, or no answer in time, `outcome` says "crashed" or "timeout", `failure` what happened, and
     `track` answers LOST.
 
-    sync: see above; pacing by the wall clock is up to who feeds the frames. log_path: file for what the SLAM prints,
-    overwritten; None keeps it in a temporary file.
+    sync: see above; pacing by the wall clock is up to who feeds the frames.
     """
 
     def __init__(
@@ -68,7 +60,6 @@ class SlamSession:
         config: SlamConfig,
         sync: Sync = "lockstep",
         limits: Limits = Limits(),
-        log_path: Path | None = None,
     ) -> None:
         check_config(backend, config)
         self._has_threads = load_backend(backend).has_background_threads
@@ -81,8 +72,7 @@ class SlamSession:
         self.sync: Sync = sync
         self.config = config
         self._limits = limits
-        self._log_path = log_path
-        self._log: IO[bytes] | None = None
+        self._log: LogFile | None = None
         self._frames: FrameBuffer | None = None
         self._scratch: ScratchFolder | None = None
         self._worker: WorkerProcess | None = None
@@ -107,7 +97,7 @@ class SlamSession:
         """Start the process and let it load, without waiting for it; a second call does nothing."""
         if self._worker is not None:
             return
-        self._log = self._log_path.open("w+b") if self._log_path else tempfile.TemporaryFile()  # noqa: SIM115
+        self._log = LogFile()
         self._frames = FrameBuffer(self.config.camera)
         self._scratch = ScratchFolder()
         self._worker = WorkerProcess(self._frames.fd, self._log, self._scratch.path, self._limits.memory_mb)
@@ -150,14 +140,9 @@ class SlamSession:
             return trajectory
         return SlamTrajectory(np.empty(0, np.int64), np.empty((0, 4, 4)), np.empty(0, np.int64))
 
-    def log_tail(self, lines: int = TAIL_LINES) -> str:
-        """The last lines that the SLAM printed; empty before `start` and after `close`."""
-        if self._log is None or self._log.closed:
-            return ""
-        size = os.fstat(self._log.fileno()).st_size
-        # Read without moving the offset: the worker writes at the same one.
-        tail = os.pread(self._log.fileno(), _TAIL_BYTES, max(0, size - _TAIL_BYTES))
-        return "\n".join(tail.decode(errors="replace").splitlines()[-lines:])
+    def log(self) -> str:
+        """What the SLAM printed, the last MiB of it; empty before `start` and after `close`."""
+        return self._log.tail() if self._log is not None else ""
 
     def close(self) -> None:
         """End the process if it still runs and free everything; a second call does nothing."""

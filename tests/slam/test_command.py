@@ -64,8 +64,8 @@ def test_program_with_the_command_line_of_orbslam2(configured, frame, tmp_path, 
     with SlamSession("command", configured(f"{STOCK} --leave-out 0 3", features="500")) as session:
         online = [session.track(one) for one in frames]
         final = session.finish()
-        assert session.outcome == "", session.log_tail()
-        assert "vocabulary of 6 branches and 6 levels" in session.log_tail()
+        assert session.outcome == "", session.log()
+        assert "vocabulary of 6 branches and 6 levels" in session.log()
     assert {result.state for result in online} == {TrackingState.NOT_INITIALIZED}
     # It wrote six decimals; these are the stamps that were fed.
     assert final.stamps_ns.tolist() == [frames[k].stamp_ns for k in (1, 2, 4)]
@@ -83,8 +83,8 @@ def test_real_slam_on_real_frames_with_the_settings_of_orbslam2(shared_data):
         for one in frames:
             session.track(one)
         final = session.finish()
-        assert session.outcome == "", session.log_tail()
-        assert "- color order: BGR" in session.log_tail(200)
+        assert session.outcome == "", session.log()
+        assert "- color order: BGR" in session.log()
     assert final.stamps_ns.tolist() == [one.stamp_ns for one in frames]
     truth = np.array([one.T_world_cam for one in frames])
     assert ate(truth, final.T_map_cam).trans_m.rmse < 0.015
@@ -195,7 +195,7 @@ def test_failure_of_the_program_is_a_crash_of_the_run(configured, frame):
         assert len(session.finish().stamps_ns) == 0
         assert session.outcome == "crashed"
         assert "ended with exit code 3" in session.failure
-        assert "some words" in session.log_tail()
+        assert "some words" in session.log()
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ def track(frames, **options):
     with SlamSession("opencv", SlamConfig(CAMERA, 30.0, options=options)) as session:
         online = [session.track(replace(frame, stamp_ns=k * FRAME_NS)) for k, frame in enumerate(frames)]
         final = session.finish()
-        assert session.outcome == "", session.log_tail()
+        assert session.outcome == "", session.log()
     return online, final
 
 

@@ -75,7 +75,7 @@ def run(frames, config=CONFIG):
     with SlamSession("orbslam3", config, "lockstep") as session:
         online = [session.track(frame) for frame in frames]
         final = session.finish()
-        assert session.outcome == "", session.log_tail()
+        assert session.outcome == "", session.log()
         assert len(session.track_s) == len(frames)
     return online, final, {frame.stamp_ns: frame.T_world_cam for frame in frames}
 
