@@ -97,8 +97,8 @@ class LossContext:
     overlap: share of the last fed frame's view that is still in view. keypoints, sharpness, brightness: of the image.
     valid_depth: share of the pixels with a depth; median_depth_m: over these. tracked_points: at the last tracked
     frame; tracked_points_slope: their change over the second before, 1/s.
-    cause: a word of `slamgym.eval.robustness.CAUSES`, "unknown" where nothing stands out. explanation: it in words,
-    with the figures that it rests on.
+    cause: a word of `slamgym.eval.robustness.CAUSES`, "unknown" where nothing stands out; "crashed" or "timeout" when
+    the SLAM was gone. explanation: it in words, with the figures that it rests on.
     """
 
     speed_mps: float

@@ -13,8 +13,8 @@ from slamgym.types import LossContext
 
 FEW_KEYPOINTS = 100
 FEW_KEYPOINTS_OF_USUAL = 0.2
-DARK, OVEREXPOSED = 30.0, 240.0
-"""Grey levels; they count only where keypoints are few."""
+DARK = 30.0
+"""Grey levels; counts only where keypoints are few. A bright image without them may well be a white wall."""
 BLURRED_OF_USUAL = 0.3
 LITTLE_DEPTH = 0.1
 LONG_GAP_OF_USUAL = 2.5
@@ -88,11 +88,6 @@ _RULES = (
         "dark",
         lambda c: c.brightness < DARK and _few_keypoints(c),
         lambda c: f"the image is dark (brightness {c.brightness:.0f} of 255)",
-    ),
-    _Rule(
-        "overexposed",
-        lambda c: c.brightness > OVEREXPOSED and _few_keypoints(c),
-        lambda c: f"the image is overexposed (brightness {c.brightness:.0f} of 255)",
     ),
     _Rule(
         "frame_gap",

@@ -41,7 +41,7 @@ def overlap(
     v, u = np.nonzero(measured)
     points_before = _back_project(u * step, v * step, depth_before[measured], camera)
     T_now_before = inverse(T_world_cam_now) @ T_world_cam_before
-    return float(_in_view(points_before @ T_now_before[:3, :3].T + T_now_before[:3, 3], camera).mean())
+    return _share_in_view(points_before @ T_now_before[:3, :3].T + T_now_before[:3, 3], camera)
 
 
 def _measured(depth: DepthImage) -> BoolArray:
@@ -53,12 +53,10 @@ def _back_project(u: NDArray[np.integer], v: NDArray[np.integer], z: DepthImage,
     return np.column_stack([(u - camera.cx) / camera.fx * z, (v - camera.cy) / camera.fy * z, z]).astype(np.float64)
 
 
-def _in_view(points: FloatArray, camera: PinholeCamera) -> BoolArray:
-    """Which points (N, 3), in the camera's frame, its image shows; a pixel reaches half a pixel about its centre."""
+def _share_in_view(points: FloatArray, camera: PinholeCamera) -> float:
+    """Share of the points (N, 3), in the camera's frame, that its image shows, to the outer edges of its pixels."""
     x, y, z = points[points[:, 2] > 0].T
     u, v = x / z * camera.fx + camera.cx, y / z * camera.fy + camera.cy
-    in_view = np.zeros(len(points), dtype=np.bool_)
-    in_view[points[:, 2] > 0] = (np.abs(u + 0.5 - camera.width / 2) <= camera.width / 2) & (
-        np.abs(v + 0.5 - camera.height / 2) <= camera.height / 2
-    )
-    return in_view
+    left, top = u + 0.5, v + 0.5
+    in_view = (left >= 0) & (left <= camera.width) & (top >= 0) & (top <= camera.height)
+    return float(in_view.sum() / len(points))

@@ -12,6 +12,9 @@ FAST_THRESHOLD = 20
 SMOOTHING_PX = 1.0
 """Standard deviation of the smoothing, in pixels of half the size."""
 
+MIN_GRADIENT = 0.05
+"""Mean squared gradient, grey levels squared, below which an image shows hardly more than its rounding."""
+
 
 def keypoint_count(grey: GreyImage) -> int:
     """FAST corners of the full image, at FAST_THRESHOLD and with non-maximum suppression.
@@ -22,7 +25,7 @@ def keypoint_count(grey: GreyImage) -> int:
 
 
 def sharpness(grey: GreyImage) -> float:
-    """How abruptly the grey changes where it changes at all, 1/px^2; NaN for an image of one grey.
+    """How abruptly the grey changes where it changes at all, 1/px^2; NaN for hardly more than one grey, or below 6x6.
 
     Mean squared second difference, along the axis where that is smaller, over the mean squared gradient: energies of
     Laplacian and gradient (Pertuz et al., "Analysis of focus measure operators for shape-from-focus", Pattern
@@ -31,12 +34,14 @@ def sharpness(grey: GreyImage) -> float:
     turn, which leaves edges along the motion sharp. Taken at half the size and smoothed, so that noise of the sensor
     does not pass for sharpness.
     """
+    if min(grey.shape) < 6:
+        return np.nan
     half = cv2.resize(grey, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA).astype(np.float32)
     smooth = cv2.GaussianBlur(half, (0, 0), SMOOTHING_PX)
     along_y, along_x = smooth[1:] - smooth[:-1], smooth[:, 1:] - smooth[:, :-1]
     gradient = _mean_square(along_y) + _mean_square(along_x)
     second = min(_mean_square(along_y[1:] - along_y[:-1]), _mean_square(along_x[:, 1:] - along_x[:, :-1]))
-    return second / gradient if gradient > 0 else np.nan
+    return second / gradient if gradient > MIN_GRADIENT else np.nan
 
 
 def brightness(grey: GreyImage) -> float:
