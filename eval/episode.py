@@ -44,7 +44,8 @@ def summarize_slam(record: SlamRecord, map_policy: str = "largest") -> Summary:
     Without a true pose, NaN or not `has_truth`, a frame is tracked or lost as any other, but nothing is judged there.
     Without any, what needs none still comes: status, completion, losses, maps, times.
 
-    - `status`: "ok", "lost", "init_failed", "crashed" or "timeout"; `success`: see `is_success`. `failure`: why the
+    - `status`: "ok", "lost", "init_failed", "crashed" or "timeout"; `success`: see `is_success`, where dropped frames
+      count as not tracked. `failure`: why the
       SLAM crashed or hung, in one line, else ""; `log_tail`: the last lines that it printed then, else none.
     - `map_policy`; `map_results`: one mapping a map, in the order of their first frames: `map_id`, `frames` and their
       `share` of those fed, `start_s`, `end_s` of the first and last of them, `ate_rmse_m`.
@@ -75,7 +76,7 @@ def summarize_slam(record: SlamRecord, map_policy: str = "largest") -> Summary:
     tracking = tracking_summary(record.stamps_ns, ref_T, tracked, losses)
     return {
         "status": status(record),
-        "success": is_success(status(record), len(losses), tracking["completion"]),
+        "success": is_success(status(record), len(losses), _share_of_all(tracked, record.frames_dropped)),
         "map_policy": map_policy,
         **accuracy_summary(_only(final, tracked)),
         "ate_online_rmse_m": _online_ate(record, tracked, map_policy),
@@ -87,6 +88,12 @@ def summarize_slam(record: SlamRecord, map_policy: str = "largest") -> Summary:
         **_ending(record, losses),
         **motion_summary(record.stamps_ns, ref_T),
     }
+
+
+def _share_of_all(tracked: BoolArray, dropped: int) -> float:
+    """Share of the frames that came, those included that were dropped because the SLAM was busy, that is tracked."""
+    came = len(tracked) + dropped
+    return float(tracked.sum()) / came if came else 0.0
 
 
 def _in_maps(record: SlamRecord, T_map_cam: FloatArray, map_id: IntArray) -> FramePoses:

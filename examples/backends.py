@@ -1,20 +1,16 @@
 """All SLAM backends over the same drives: each drive is rendered once, and every backend gets the same frames."""
 
-import tempfile
-from pathlib import Path
 from typing import Any
 
-import gymnasium as gym
 import pandas as pd
 import tyro
 
 import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
-from slamgym.eval.datasets import read_sequence
 from slamgym.params import SlamParams
-from slamgym.recording import record_drive
+from slamgym.recording import recorded_drive
 from slamgym.replay import replay
-from slamgym.report_table import loss_lines
+from slamgym.report_table import remarks
 
 
 def main(
@@ -35,15 +31,12 @@ def main(
         runs.append({"slam": "command", "slam_options": {"command": command}})
     rows = []
     for seed in seeds:
-        with tempfile.TemporaryDirectory() as folder:
-            env = gym.make("HomeRobot-v0", speed=speed, path_length_m=path_length_m, scene=scene, camera=camera)
-            drive = record_drive(env, PathFollower(), seed, Path(folder))
-            env.close()
-            sequence = read_sequence(Path(folder))
+        drive = {"speed": speed, "path_length_m": path_length_m, "scene": scene, "camera": camera}
+        with recorded_drive(PathFollower(), seed, **drive) as sequence:
             for params in runs:
                 summary = replay(sequence, SlamParams.checked(params)).summary
-                rows.append({"path": seed, "driven m": drive.summary["distance_m"], **params, **columns(summary)})
-                for line in loss_lines(summary):
+                rows.append({"path": seed, **params, **columns(summary)})
+                for line in remarks(summary):
                     print(f"path {seed}, {params['slam']}: {line}")
     print(pd.DataFrame(rows).drop(columns="slam_options", errors="ignore").to_string(index=False, float_format="%.4f"))
 
@@ -51,6 +44,7 @@ def main(
 def columns(summary: dict[str, Any]) -> dict[str, Any]:
     """What the table shows of one run."""
     return {
+        "frames": summary["frames_fed"],
         "status": summary["status"],
         "ATE m": summary["ate_rmse_m"],
         "completion": summary["completion"],

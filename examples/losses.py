@@ -4,25 +4,21 @@ Each drive is rendered once. First the SLAM gets it as it is, to see how far the
 all is well, then once for each disturbance.
 """
 
-import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
 
 import cv2
-import gymnasium as gym
 import numpy as np
 import pandas as pd
 import tyro
 
 import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
-from slamgym.eval.datasets import Sequence, read_sequence
+from slamgym.eval.datasets import Sequence
 from slamgym.eval.episode import summarize_slam
 from slamgym.eval.robustness import explain
 from slamgym.params import SlamParams
-from slamgym.recording import record_drive
+from slamgym.recording import recorded_drive
 from slamgym.slam.history import FrameHistory
 from slamgym.slam.record import SlamRun, run_sequence
 from slamgym.types import Frame, LossContext, TrackingState
@@ -53,22 +49,13 @@ def main(
     calm: list[LossContext] = []
     rows = []
     for scene, seed in zip(scenes, seeds, strict=True):
-        with recorded(seed, scene=scene, speed=speed, path_length_m=path_length_m, camera=camera) as sequence:
+        drive = {"scene": scene, "speed": speed, "path_length_m": path_length_m, "camera": camera}
+        with recorded_drive(PathFollower(), seed, **drive) as sequence:
             calm += watched(sequence, params)
             for name, disturb in DISTURBANCES.items():
                 rows.append({"scene": scene, "disturbance": name, **told(sequence, params, disturb(sequence))})
     print_calm(calm)
     print(pd.DataFrame(rows).to_string(index=False, max_colwidth=70))
-
-
-@contextmanager
-def recorded(seed: int, **params: object) -> Iterator[Sequence]:
-    """The frames of one drive, on the disk for as long as they are needed."""
-    with tempfile.TemporaryDirectory() as folder:
-        env = gym.make("HomeRobot-v0", **params)
-        record_drive(env, PathFollower(), seed, Path(folder))
-        env.close()
-        yield read_sequence(Path(folder))
 
 
 def watched(sequence: Sequence, params: SlamParams) -> list[LossContext]:

@@ -4,14 +4,12 @@ With `--sequence FOLDER` it is a recorded sequence instead, such as one of TUM R
 """
 
 import multiprocessing
-import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 import pandas as pd
 import tyro
@@ -21,7 +19,7 @@ from slamgym.agents import PathFollower
 from slamgym.eval.datasets import Sequence, read_sequence
 from slamgym.eval.robustness import average
 from slamgym.params import SlamParams
-from slamgym.recording import record_drive
+from slamgym.recording import recorded_drive
 from slamgym.replay import replay
 from slamgym.slam.session import Sync
 
@@ -41,8 +39,12 @@ def main(
     syncs: tuple[Sync, ...] = ("lockstep", "realtime", "free"),
 ) -> None:
     """Feed the same frames `repeats` times in each sync mode, on an idle machine and beside `busy_loops`."""
-    drive = {"speed": speed, "scene": scene, "path_length_m": path_length_m, "camera": camera}
-    with recorded(seed, **drive) if sequence is None else nullcontext(read_sequence(sequence, sequence_camera)) as seq:
+    drive: dict[str, Any] = {"speed": speed, "scene": scene, "path_length_m": path_length_m, "camera": camera}
+    with (
+        recorded_drive(PathFollower(), seed, **drive)
+        if sequence is None
+        else nullcontext(read_sequence(sequence, sequence_camera)) as seq
+    ):
         rows = []
         for sync in syncs:
             params = SlamParams.checked({"slam": slam, "slam_sync": sync, "stride": stride})
@@ -54,21 +56,17 @@ def main(
     for condition, runs in table.groupby(["sync", "busy loops"], sort=False):
         ate = runs["ATE m"].to_numpy()
         # A failed run is worse than any other: the median counts it as infinite instead of leaving it out.
-        typical = average(ate, ~runs["success"].to_numpy(), "penalise", penalty=np.inf)
+        failed = ~runs["success"].to_numpy() | np.isnan(ate)
+        typical = average(ate, failed, "penalise", penalty=np.inf)
         print(
             f"{condition}: ATE m {typical}; from {np.nanmin(ate):.4f} to {np.nanmax(ate):.4f}; "
             f"median wall time {runs['wall s'].median():.1f} s"
         )
 
 
-@contextmanager
-def recorded(seed: int, **params: Any) -> Iterator[Sequence]:
-    """All frames of one drive, rendered once, on the disk for as long as they are needed."""
-    with tempfile.TemporaryDirectory() as folder:
-        env = gym.make("HomeRobot-v0", **params)
-        record_drive(env, PathFollower(), seed, Path(folder))
-        env.close()
-        yield read_sequence(Path(folder))
+def given(folder: Path, camera: str | None) -> AbstractContextManager[Sequence]:
+    """A sequence that is there already."""
+    return nullcontext(read_sequence(folder, camera))
 
 
 def run(sequence: Sequence, params: SlamParams) -> dict[str, Any]:

@@ -12,9 +12,10 @@ from rich.console import Console
 import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
 from slamgym.errors import SlamgymError
+from slamgym.files import check_free
 from slamgym.report_table import episode_table
 from slamgym.rollout import Episode, EpisodeInterrupted, run_episode
-from slamgym.run_folder import check_free, write_run
+from slamgym.run_folder import write_run
 
 console = Console()
 
@@ -28,7 +29,7 @@ def main(
 ) -> None:
     """Drive the path that each of `seeds` picks in `scene` at each of `speeds` (m/s). out: a new folder."""
     out = out or Path("out") / f"speed_sweep-{datetime.now():%Y%m%d-%H%M%S}"
-    check_free(out)
+    check_free(out, "folder")
     episodes: list[Episode] = []
     try:
         for speed in speeds:

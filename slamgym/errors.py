@@ -21,7 +21,9 @@ class RenderError(SlamgymError):
 
 
 class SlamError(SlamgymError):
-    """A SLAM backend cannot be started: its library or vocabulary is missing or unreadable."""
+    """A SLAM cannot do its work: a library, program or vocabulary is missing, unreadable or cannot be downloaded, or a
+    program failed or wrote a trajectory that cannot be used.
+    """
 
 
 class TrajectoryError(SlamgymError, ValueError):
@@ -29,7 +31,9 @@ class TrajectoryError(SlamgymError, ValueError):
 
 
 class TrajectoryWarning(UserWarning):
-    """Something about a trajectory was repaired, or looks wrong; what was done about it."""
+    """Something about a trajectory or a sequence was repaired, or looks wrong, or was left out: images without depth;
+    what was done about it.
+    """
 
 
 class SequenceError(SlamgymError):

@@ -1,6 +1,8 @@
 """A drive that is rendered once and kept on the disk, so that any number of SLAM runs can be fed with it."""
 
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,7 @@ from numpy.typing import NDArray
 from slamgym.agents import Agent
 from slamgym.env import HomeRobotEnv, Info, Observation
 from slamgym.errors import ConfigError
-from slamgym.eval.datasets import SequenceWriter
+from slamgym.eval.datasets import Sequence, SequenceWriter, read_sequence
 from slamgym.rollout import Episode, RobotEnv, run_episode
 from slamgym.types import Frame
 
@@ -34,6 +36,21 @@ def record_drive(
         raise ConfigError(f"recording: expected a HomeRobot environment, got {env}")
     with SequenceWriter(folder, robot.params.camera, robot.params.fps) as writer:
         return run_episode(_FrameTap(env, writer.add), agent, seed, on_step)
+
+
+@contextmanager
+def recorded_drive(agent: Agent, seed: int, **params: Any) -> Iterator[Sequence]:
+    """The frames of one drive, rendered once, on the disk as long as the block lasts.
+
+    params: keywords of `gym.make("HomeRobot-v0", ...)`. Raises what `record_drive` raises.
+    """
+    with tempfile.TemporaryDirectory(prefix="slamgym-drive-") as folder:
+        env = gym.make("HomeRobot-v0", **params)
+        try:
+            record_drive(env, agent, seed, Path(folder))
+        finally:
+            env.close()
+        yield read_sequence(Path(folder))
 
 
 class _FrameTap(gym.Wrapper[Observation, NDArray[np.float32], Observation, NDArray[np.float32]]):

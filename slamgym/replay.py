@@ -3,14 +3,17 @@
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from slamgym.errors import ConfigError
 from slamgym.eval.datasets import Sequence, read_ahead
 from slamgym.eval.episode import summarize_slam
 from slamgym.eval.trajectories import Trajectory, step_sizes
 from slamgym.params import SlamParams
+from slamgym.slam.backend import load_backend
+from slamgym.slam.groundtruth import GroundTruth
 from slamgym.slam.record import SlamRun, run_sequence
 from slamgym.types import Frame, SlamRecord, Summary
 
@@ -28,8 +31,8 @@ class Replay:
     slam: SlamRecord
     slam_log: str
     summary: Summary
-    grid: None = None
-    path_xy: None = None
+    grid: ClassVar[None] = None
+    path_xy: ClassVar[None] = None
 
     @property
     def truth(self) -> Trajectory | None:
@@ -52,7 +55,7 @@ class Replay:
             "y_m": position[:, 1],
             "z_m": position[:, 2],
             "speed_mps": np.append(np.nan, step_m / step_s),
-            "yaw_rate_radps": np.append(np.nan, step_rad / step_s),
+            "rotation_rate_radps": np.append(np.nan, step_rad / step_s),
             "has_truth": sequence.has_truth,
         }
 
@@ -63,13 +66,16 @@ def replay(sequence: Sequence, params: SlamParams, on_frame: Callable[[int], Non
     The images are read ahead of their use, a few at a time, whatever the length of the sequence. on_frame: called with
     the number of frames done. Raises ConfigError and SlamError for the SLAM, SequenceError for an unreadable image.
     """
+    if sequence.truth is None and issubclass(load_backend(params.slam), GroundTruth):
+        raise ConfigError(
+            f"slam backend {params.slam!r}: expected a sequence with a truth, got {sequence.name} without"
+        )
     config = params.config(sequence.camera, sequence.fps)
+    recorded = params.recorded(config)  # now: a program may be built anew while it runs
     with params.session(config) as session:
         run = SlamRun(session)
-        numbers = range(0, len(sequence), params.stride + 1)
-        record = run_sequence(run, _told(read_ahead(sequence, numbers), on_frame))
+        record = run_sequence(run, _told(read_ahead(sequence, sequence.rows(params.stride)), on_frame))
         log = session.log()
-    recorded = params.recorded(config)
     versions = {"slamgym": version("slamgym"), **recorded.pop("slam_versions")}
     return Replay(
         sequence=sequence,

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
+from slamgym.eval.plots.names import printable, shorten
+from slamgym.eval.robustness import average
 from slamgym.rollout import Episode
 from slamgym.tables import PERCENT, figures_table
 
@@ -26,7 +28,7 @@ EPISODE_COLUMNS: dict[str, tuple[str, str]] = {
 RPE 1 is over one fed frame, RPE all over all steps."""
 
 REPLAY_COLUMNS: dict[str, tuple[str, str]] = {
-    "sequence": ("sequence", "{:.18}"),
+    "sequence": ("name", "{}"),
     "run": ("run", "{}"),
     "status": ("status", "{}"),
     "ATE\nm": ("ate_rmse_m", "{:.4f}"),
@@ -39,7 +41,16 @@ REPLAY_COLUMNS: dict[str, tuple[str, str]] = {
 }
 """Heading -> key of the run's row, and its format."""
 
+LONGEST_NAME = 18
 LINES_OF_LOSSES = 10
+
+ENDED = {
+    "relocalized": "then found again",
+    "new_map": "then in a new map",
+    "map_reset": "its map thrown away",
+    "never": "to the end",
+}
+"""Outcome of a loss -> how it is told."""
 
 
 def episode_table(episodes: Sequence[Episode]) -> Table:
@@ -49,26 +60,40 @@ def episode_table(episodes: Sequence[Episode]) -> Table:
 
 def replay_table(rows: Sequence[Mapping[str, Any]]) -> Table:
     """A table with one row a run."""
-    return figures_table(REPLAY_COLUMNS, rows)
+    return figures_table(REPLAY_COLUMNS, [{**row, "name": _short(row["sequence"])} for row in rows])
+
+
+def _short(sequence: str) -> str:
+    """Names of TUM RGB-D differ only after what they have in common."""
+    return shorten(printable(sequence.removeprefix("rgbd_dataset_")), LONGEST_NAME)
 
 
 def spread_line(name: str, rows: Sequence[Mapping[str, Any]]) -> str:
     """How far the runs of one sequence lie apart; the median counts one that failed as worse than any other."""
     ate = np.array([row["ate_rmse_m"] for row in rows])
     succeeded = np.array([row["success"] for row in rows])
-    median = np.median(np.where(succeeded & np.isfinite(ate), ate, np.inf))
-    known = ate[np.isfinite(ate)]
-    spread = f"{known.min():.4f} to {known.max():.4f} m" if len(known) else "none"
-    return f"{name}: ATE {spread}, median {median:.4f} m; {succeeded.sum()} of {len(rows)} runs without a failure"
+    known = np.isfinite(ate)
+    ending = f"{succeeded.sum()} of {len(rows)} runs without a failure"
+    if not known.any():
+        return f"{name}: no ATE; {ending}"
+    median = average(ate, ~(succeeded & known), "penalise", penalty=np.inf).value
+    typical = f"{median:.4f} m" if np.isfinite(median) else "none, since half of the runs or more failed"
+    return f"{name}: ATE {ate[known].min():.4f} to {ate[known].max():.4f} m, median {typical}; {ending}"
 
 
-def loss_lines(summary: Mapping[str, Any]) -> Iterator[str]:
-    """When a run was lost, for how long and why, and why it ended early."""
+def remarks(summary: Mapping[str, Any]) -> Iterator[str]:
+    """When a run was lost, for how long and why; why it ended early; whether lock-step had to give up."""
     for loss in summary["losses"][:LINES_OF_LOSSES]:
         context = loss["context"]
         why = f": {context['explanation']}" if context else ""
-        yield f"lost at {loss['start_s']:.2f} s for {loss['duration_s']:.2f} s, {loss['outcome']}{why}"
+        yield f"lost at {loss['start_s']:.2f} s for {loss['duration_s']:.2f} s, {ENDED[loss['outcome']]}{why}"
     if (more := len(summary["losses"]) - LINES_OF_LOSSES) > 0:
         yield f"and {more} more losses, see episode.json"
-    if summary["failure"]:
+    causes = [loss["context"]["cause"] for loss in summary["losses"] if loss["context"]]
+    if summary["failure"] and summary["status"] not in causes:
         yield f"{summary['status']}: {summary['failure']}"
+    if overruns := summary["lockstep_overruns"]:
+        yield (
+            f"the SLAM's threads never came to rest after {overruns} frames: lock-step went on without them; if they "
+            "always work, feed it with --slam-sync realtime or free"
+        )

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slamgym.agents import Agent
-from slamgym.env import HomeRobotEnv, Observation
+from slamgym.env import END_REACHED_M, HomeRobotEnv, Observation
 from slamgym.eval.trajectories import Trajectory
 from slamgym.interrupt import deferred_interrupt
 from slamgym.scenes.occupancy import OccupancyGrid
@@ -96,7 +96,7 @@ def run_episode(
             while not end:
                 obs, reward, terminated, truncated, info = env.step(agent.act(obs, info))
                 steps.append(_step_of(info, float(reward)))
-                end = _end(info, terminated, truncated, interrupted())
+                end = _end(terminated, truncated, interrupted())
                 if on_step is not None:
                     on_step(info["progress_m"], info["path_length_m"])
         except KeyboardInterrupt:  # a second Ctrl-C, or one that the agent raised
@@ -107,10 +107,10 @@ def run_episode(
     return episode
 
 
-def _end(info: dict[str, Any], terminated: bool, truncated: bool, interrupted: bool) -> str:
+def _end(terminated: bool, truncated: bool, interrupted: bool) -> str:
     """What ended the drive with this step: "" when it goes on."""
     if terminated:
-        return "slam_gone" if info.get("slam", {}).get("event") in ("crashed", "timeout") else "path_driven"
+        return "path_driven"
     if truncated:
         return "truncated"
     return "interrupted" if interrupted else ""
@@ -134,6 +134,8 @@ def _episode(env: RobotEnv, agent: Agent, seed: int, steps: tuple[Step, ...], en
     with_slam = env.has_wrapper_attr("slam_record")
     # Results first: they end the SLAM, and its log is whole then.
     summary = env.get_wrapper_attr("conclude")() if with_slam else robot.summarize_drive()
+    if end == "path_driven" and steps[-1].progress_m < robot.path.length_m - END_REACHED_M:
+        end = "slam_gone"
     timing = {"timing": env.get_wrapper_attr("slam_timing")()} if with_slam else {}
     return Episode(
         config=_config(env, robot, agent, seed),

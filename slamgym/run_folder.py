@@ -3,7 +3,7 @@
 config.yaml      all parameters, as they were resolved
 episode.json     the results, the keys of `info["episode_slam"]` at the top level
 groundtruth.txt  true poses of the camera's optical frame, TUM format: at every rendered frame, or all of a sequence
-estimate.txt     the SLAM's final poses in the evaluated map, TUM format
+estimate.txt     the SLAM's final poses in the evaluated map, of several the largest, TUM format
 poses.csv        all its poses, with the map that each is in: as they were emitted ("online"), and the "final" ones
 fed_frames.txt   stamps of the frames that the SLAM was given, for `slamgym eval --frames`
 frames.csv       one row a frame: motion of the camera, and the SLAM's answer where the frame was fed
@@ -12,8 +12,6 @@ slam.log         what the SLAM printed, the last MiB of it
 """
 
 import json
-import os
-import tempfile
 from itertools import count
 from pathlib import Path
 from typing import Any, Protocol
@@ -22,11 +20,11 @@ import numpy as np
 import pandas as pd
 import yaml
 
-from slamgym.errors import OutputError
 from slamgym.eval.plots import plot_map
 from slamgym.eval.robustness import estimate_by_frame, evaluated_frames
 from slamgym.eval.summary import without_nan
 from slamgym.eval.trajectories import Trajectory, write_stamps, write_tum
+from slamgym.files import check_free, draft
 from slamgym.geometry import quaternion_xyzw
 from slamgym.interrupt import deferred_interrupt
 from slamgym.scenes.occupancy import OccupancyGrid
@@ -55,17 +53,6 @@ class Run(Protocol):
         ...
 
 
-def check_free(folder: Path) -> None:
-    """Raise OutputError unless a run folder can be made at `folder`; to be asked before hours of work."""
-    folder = folder.resolve()
-    taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
-    if taken or folder.is_mount() or Path.cwd().is_relative_to(folder):
-        raise OutputError(f"output folder: expected a new or empty folder, got {folder}; remove it or name another")
-    above = next(parent for parent in folder.parents if parent.exists())
-    if not above.is_dir() or not os.access(above, os.W_OK | os.X_OK):
-        raise OutputError(f"output folder: cannot write in {above}; name another folder, or change its permissions")
-
-
 def write_run(run: Run, folder: Path) -> Path:
     """Write the run folder in one piece and return it; an interrupted episode's gets the suffix ".interrupted".
 
@@ -74,13 +61,10 @@ def write_run(run: Run, folder: Path) -> Path:
     folder = folder.resolve()
     if run.summary["end"] == "interrupted":
         folder = _interrupted_folder(folder)
-    check_free(folder)
-    with deferred_interrupt() as interrupted:
-        try:
-            _write_at_once(run, folder)
-        except OSError as error:
-            reason = error.strerror or str(error)
-            raise OutputError(f"output folder: writing {folder} failed ({reason}); make room or name another") from None
+    check_free(folder, "folder")
+    with deferred_interrupt() as interrupted, draft(folder) as place:
+        place.mkdir()
+        _write_files(run, place)
     if interrupted():
         raise KeyboardInterrupt
     return folder
@@ -93,15 +77,6 @@ def _interrupted_folder(folder: Path) -> Path:
     return next(candidate for candidate in candidates if not candidate.exists())
 
 
-def _write_at_once(run: Run, folder: Path) -> None:
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=f".{folder.name}-", dir=folder.parent) as draft_folder:
-        draft = Path(draft_folder) / folder.name
-        draft.mkdir()
-        _write_files(run, draft)
-        draft.replace(folder)
-
-
 def frames_table(run: Run) -> pd.DataFrame:
     """One row a frame; the `slam_*` columns are empty where the frame was not fed."""
     table = pd.DataFrame(run.motion())
@@ -109,9 +84,12 @@ def frames_table(run: Run) -> pd.DataFrame:
 
 
 def final_estimate(record: SlamRecord, map_policy: str = "largest") -> Trajectory:
-    """The SLAM's final poses (T_map_cam) in the evaluated map; empty when no frame was tracked."""
+    """The SLAM's final poses (T_map_cam) in the evaluated map; empty when no frame was tracked.
+
+    Of "each" map only the largest: a file of poses has one origin.
+    """
     T_map_cam, _ = estimate_by_frame(record)
-    chosen = evaluated_frames(record, map_policy)
+    chosen = evaluated_frames(record, "largest" if map_policy == "each" else map_policy)
     return Trajectory(record.stamps_ns[chosen], T_map_cam[chosen])
 
 
@@ -155,7 +133,7 @@ def _write_files(run: Run, folder: Path) -> None:
     if run.truth is not None:
         write_tum(folder / "groundtruth.txt", run.truth)
     frames_table(run).to_csv(folder / "frames.csv", index=False, float_format="%.9g")
-    (folder / "slam.log").write_text(run.slam_log)
+    (folder / "slam.log").write_text(run.slam_log, encoding="utf-8")
     if run.slam is not None:
         write_tum(folder / "estimate.txt", final_estimate(run.slam, run.config["map_policy"]))
         poses_table(run.slam).to_csv(folder / "poses.csv", index=False, float_format="%.9g")

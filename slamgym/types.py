@@ -4,10 +4,10 @@ Transforms are float64 arrays of shape (4, 4) or (N, 4, 4); `T_a_b` maps points 
 metres, stamps integer nanoseconds. The camera frame is optical: x right, y down, z forward.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,6 +85,15 @@ class SlamTrajectory:
     T_map_cam: FloatArray
     map_id: IntArray
 
+    @classmethod
+    def of(cls, poses: Sequence[tuple[int, FloatArray, int]] = ()) -> Self:
+        """From the stamp, nanoseconds, T_map_cam (4, 4) and the map of each pose, in the order of the stamps."""
+        return cls(
+            stamps_ns=np.array([stamp_ns for stamp_ns, _, _ in poses], dtype=np.int64),
+            T_map_cam=np.array([T_map_cam for _, T_map_cam, _ in poses], dtype=np.float64).reshape(-1, 4, 4),
+            map_id=np.array([map_id for _, _, map_id in poses], dtype=np.int64),
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class LossContext:
@@ -93,7 +102,8 @@ class LossContext:
     All but the last two are NaN where they cannot be told. `usual_*`: medians over the tracked frames of the second
     before. Image measures are those of `slamgym.eval.views`.
 
-    speed_mps, yaw_rate_degps: true motion of the camera. frame_gap_s: since the last fed frame; usual_frame_gap_s.
+    speed_mps, rotation_rate_degps: true motion of the camera; for a level robot the second is its yaw rate.
+    frame_gap_s: since the last fed frame; usual_frame_gap_s.
     overlap: share of the last fed frame's view that is still in view. keypoints, sharpness, brightness: of the image.
     valid_depth: share of the pixels with a depth; median_depth_m: over these. tracked_points: at the last tracked
     frame; tracked_points_slope: their change over the second before, 1/s.
@@ -102,7 +112,7 @@ class LossContext:
     """
 
     speed_mps: float
-    yaw_rate_degps: float
+    rotation_rate_degps: float
     frame_gap_s: float
     usual_frame_gap_s: float
     overlap: float

@@ -45,6 +45,7 @@ class SlamWrapper(
         self.slam_params = given or SlamInLoopParams.checked(slam_params)
         self._config = self.slam_params.config(robot.params.camera, robot.params.fps)
         check_config(self.slam_params.slam, self._config)
+        self._recorded = self.slam_params.recorded(self._config)
         assert isinstance(env.observation_space, spaces.Dict)
         self.observation_space = spaces.Dict({**env.observation_space.spaces, "slam_state": spaces.Discrete(3)})
         self._session: SlamSession | None = None
@@ -104,7 +105,7 @@ class SlamWrapper(
 
     def slam_config(self) -> dict[str, Any]:
         """See `SlamParams.recorded`."""
-        return self.slam_params.recorded(self._config)
+        return dict(self._recorded)
 
     def slam_timing(self) -> dict[str, float]:
         """See `SlamRun.timing`; not in `info`, which is the same on every computer."""

@@ -53,8 +53,22 @@ def test_published_figure_stands_beside_ours(recorded, tmp_path, capsys):
 def test_losses_are_told_with_their_reasons(recorded, tmp_path, capsys, faulty):
     main(["replay", str(recorded), "--slam", faulty("Segfaults"), "--out", str(tmp_path / "out")])
     printed = " ".join(capsys.readouterr().out.split())
+    why = "its process was ended by signal 11 (Segmentation fault) at frame 2"
     assert "drive, run 1: lost at 0.07 s" in printed
-    assert "drive, run 1: crashed: its process was ended by signal 11 (Segmentation fault) at frame 2" in printed
+    assert f"to the end: {why}" in printed
+
+
+def test_runs_that_were_done_before_an_error_are_kept_and_shown(recorded, tmp_path, capsys):
+    damaged = tmp_path / "damaged"
+    shutil.copytree(recorded, damaged)
+    sorted((damaged / "rgb").iterdir())[20].write_bytes(b"no image")
+    out = tmp_path / "out"
+    with pytest.raises(SystemExit):
+        main(["replay", str(recorded), str(damaged), "--slam", "groundtruth", "--out", str(out)])
+    printed = capsys.readouterr()
+    assert "100.0%" in printed.out
+    assert "damaged/rgb" in printed.err.replace("\n", "")
+    assert pd.read_csv(out / "runs.csv")["sequence"].tolist() == ["drive"]
 
 
 def test_real_sequence(shared_data, tmp_path, capsys):
@@ -78,6 +92,8 @@ def test_real_sequence(shared_data, tmp_path, capsys):
         (["DRIVE", "--slam-sync", "real", "--out", "OUT"], "did you mean 'realtime'"),
         (["DRIVE", "--map-policy", "last", "--out", "OUT"], "map_policy"),
         (["DRIVE", "--out", "DRIVE"], "new or empty"),
+        (["DRIVE", "--slam-options", "a", "1", "--slam-options", "b", "2", "--out", "OUT"], "expected it once"),
+        (["DRIVE", "--slam-options", "baseline", "inf", "--out", "OUT"], "finite"),
     ],
 )
 def test_bad_input_is_told_in_one_line(recorded, tmp_path, capsys, arguments, message):

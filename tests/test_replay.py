@@ -9,7 +9,7 @@ import yaml
 
 import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
-from slamgym.errors import OutputError, SequenceError
+from slamgym.errors import ConfigError, OutputError, SequenceError
 from slamgym.eval.datasets import read_sequence
 from slamgym.params import SlamParams
 from slamgym.recording import record_drive
@@ -129,6 +129,25 @@ def test_recording_needs_a_new_folder(tmp_path):
     with pytest.raises(OutputError, match="new or empty"):
         record_drive(env, PathFollower(), 7, tmp_path)
     env.close()
+
+
+def test_final_poses_at_other_stamps_are_a_crash(recorded, faulty):
+    done = replay(recorded[1], params(slam=faulty("FinishesWithOtherStamps")))
+    assert done.summary["status"] == "crashed"
+    assert "has the stamp of a frame" in done.summary["failure"]
+
+
+def test_holes_of_the_truth_are_not_judged(recorded):
+    sequence = recorded[1]
+    known = np.arange(len(sequence)) % 2 == 0
+    done = replay(replace(sequence, has_truth=known), params(slam="groundtruth"))
+    assert done.summary["frames_without_truth"] == (~known).sum()
+    assert done.summary["completion"] == 1.0
+
+
+def test_oracle_needs_a_truth(recorded):
+    with pytest.raises(ConfigError, match="expected a sequence with a truth"):
+        replay(replace(recorded[1], truth=None), params(slam="wheel_odometry"))
 
 
 def test_sequence_without_a_truth(recorded, tmp_path):

@@ -1,6 +1,7 @@
 """The camera of a recorded sequence: its camera.yaml, or a preset that a name stands for."""
 
 import re
+from dataclasses import asdict
 from pathlib import Path
 
 import yaml
@@ -8,7 +9,7 @@ from pydantic import PositiveFloat
 
 from slamgym.camera import CAMERAS, LENSES, PinholeCamera
 from slamgym.checked_params import Params
-from slamgym.errors import ConfigError, OutputError, SequenceError, unknown_word
+from slamgym.errors import ConfigError, SequenceError, unknown_word
 
 CAMERA_FILE = "camera.yaml"
 TUM_DEPTH_SCALE = 5000.0
@@ -23,7 +24,7 @@ _FREIBURG = re.compile(r"(?:freiburg|tum_fr)([123])_")
 
 class CameraFile(Params):
     """The keys of a camera.yaml: those of `PinholeCamera`, how many units of a depth image are a metre, and the frames
-    a second if it tells them.
+    a second if it tells them. Numbers may be words: YAML's reader takes 1e-5, without a point, for one.
     """
 
     width: int
@@ -40,6 +41,9 @@ class CameraFile(Params):
     def pinhole(self) -> PinholeCamera:
         """Raises ConfigError for values that no camera has."""
         return PinholeCamera(**self.model_dump(exclude={"depth_scale", "fps"}))
+
+
+_KEYS = ", ".join(CameraFile.model_fields)
 
 
 def find_camera(folder: Path, given: str | None = None) -> CameraFile:
@@ -59,10 +63,9 @@ def find_camera(folder: Path, given: str | None = None) -> CameraFile:
         return own
     if told := _FREIBURG.search(folder.resolve().name):
         return _from_preset(f"tum_fr{told[1]}", None)
-    keys = ", ".join(CameraFile.model_fields)
     raise SequenceError(
         f"{folder}: expected to know the camera, got no {CAMERA_FILE}: give --camera {'|'.join(LENSES)}, or write a "
-        f"{CAMERA_FILE} there with the keys {keys} (the last three are optional)"
+        f"{CAMERA_FILE} there with the keys {_KEYS} (the last three are optional)"
     )
 
 
@@ -73,24 +76,19 @@ def read_camera(path: Path) -> CameraFile:
         _ = camera.pinhole
     except (OSError, ValueError, OverflowError, RecursionError, yaml.YAMLError) as error:
         reason = error.strerror if isinstance(error, OSError) else " ".join(str(error).split())
-        keys = ", ".join(CameraFile.model_fields)
-        raise SequenceError(f"{path}: expected the keys {keys}, got: {str(reason)[:300]}; correct the file") from None
+        raise SequenceError(f"{path}: expected the keys {_KEYS}, got: {str(reason)[:300]}; correct the file") from None
     return camera
 
 
 def write_camera(path: Path, camera: PinholeCamera, fps: float) -> None:
-    """Write a camera.yaml for depth images of TUM's scale, as `read_camera` reads it back; raises OutputError."""
-    values = {name: getattr(camera, name) for name in ("width", "height", "fx", "fy", "cx", "cy")}
-    values |= {"distortion": list(camera.distortion), "depth_scale": TUM_DEPTH_SCALE, "fps": float(fps)}
-    try:
-        path.write_text(yaml.safe_dump(values, sort_keys=False), encoding="utf-8")
-    except OSError as error:
-        raise OutputError(f"cannot write the camera {path}: {error.strerror}") from error
+    """Write a camera.yaml for depth images of TUM's scale, as `read_camera` reads it back; raises OSError."""
+    values = {**asdict(camera), "distortion": list(camera.distortion)}
+    values |= {"depth_scale": TUM_DEPTH_SCALE, "fps": float(fps)}
+    path.write_text(yaml.safe_dump(values, sort_keys=False), encoding="utf-8")
 
 
 def _from_preset(name: str, own: CameraFile | None) -> CameraFile:
-    preset = PRESETS[name]
-    values = {key: getattr(preset, key) for key in PinholeCamera.__dataclass_fields__}
+    values = asdict(PRESETS[name])
     return CameraFile(**values) if own is None else own.model_copy(update=values)
 
 

@@ -26,14 +26,14 @@ class Published(NamedTuple):
     source: str
 
 
-def published(name: str, system: str = "ORB-SLAM2") -> Published | None:
-    """What was published for the sequence in a folder of this name, None where nothing is known.
+def published(name: str) -> Published | None:
+    """What was published of ORB-SLAM2 for the sequence in a folder of this name, None where nothing is known.
 
     name: `rgbd_dataset_freiburg1_xyz`, `fr1_xyz`, `tum_fr1_xyz_100`, ...; a number of two digits or more at its end may
     count frames. Figures of a cut sequence differ from those of the whole one, which was published.
     """
     sequence = _sequence_of(name)
-    return next((row for row in _rows() if (row.sequence, row.system) == (sequence, system)), None)
+    return next((row for row in _rows() if row.sequence == sequence), None)
 
 
 def _sequence_of(name: str) -> str | None:

@@ -40,6 +40,10 @@ class Sequence:
         """Frame k; raises SequenceError when its images cannot be read."""
         return Frame(int(self.stamps_ns[k]), *self.read_images(k), self.T_world_cam[k], bool(self.has_truth[k]))
 
+    def rows(self, stride: int = 0) -> range:
+        """The numbers of every (stride + 1)-th frame, the first one included."""
+        return range(0, len(self), stride + 1)
+
     def frames(self, stride: int = 0) -> Iterator[Frame]:
-        """Every (stride + 1)-th frame, the first one included."""
-        return map(self.frame, range(0, len(self), stride + 1))
+        """The frames of these `rows`."""
+        return map(self.frame, self.rows(stride))

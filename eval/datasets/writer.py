@@ -1,9 +1,9 @@
 """Recording frames as a sequence in the format of the TUM RGB-D benchmark."""
 
 from collections import deque
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from contextlib import ExitStack, suppress
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import Self
 
@@ -17,6 +17,7 @@ from slamgym.eval.datasets.camera_file import CAMERA_FILE, TUM_DEPTH_SCALE, writ
 from slamgym.eval.datasets.images import png
 from slamgym.eval.trajectories import Trajectory, write_tum
 from slamgym.eval.trajectories.stamp_words import seconds_word
+from slamgym.files import check_free, draft
 from slamgym.types import FloatArray, Frame
 
 _THREADS = 2
@@ -27,14 +28,14 @@ _MAX_UINT16 = 65535
 class SequenceWriter:
     """Writes frames into a new or empty folder; `read_sequence` and the programs of ORB-SLAM read it.
 
-    rgb/*.png and depth/*.png (16 bits, 5000 a metre) are named by their stamp and written by threads while frames come;
-    the lists rgb.txt, depth.txt and associations.txt, groundtruth.txt with the poses that are finite and no
-    interpolation, and camera.yaml appear in `close`: a folder without lists is an unfinished recording. Colour is
-    exact, stamps are to the nanosecond. Depth is rounded to 0.2 mm; what is not finite, not positive or farther than
-    13.1 m becomes 0, no measurement.
+    rgb/*.png and depth/*.png (16 bits, 5000 a metre) are named by their stamp; beside them are the lists rgb.txt,
+    depth.txt and associations.txt, groundtruth.txt with the poses that are finite and no interpolation, and
+    camera.yaml. Colour is exact, stamps are to the nanosecond. Depth is rounded to 0.2 mm; what is not finite, not
+    positive or farther than 13.1 m becomes 0, no measurement.
 
-    As a context manager it closes at the end of the block, and stops without lists when an exception leaves it.
-    Raises OutputError when the folder is not new or empty, or something cannot be written.
+    Threads write the images to a draft beside the folder while frames come; `close` puts it in its place. As a context
+    manager it closes at the end of the block, and leaves nothing when an exception ends it. Raises OutputError when the
+    folder is not new or empty, or something cannot be written, which leaves nothing either.
     """
 
     def __init__(self, folder: Path, camera: PinholeCamera, fps: float) -> None:
@@ -44,8 +45,14 @@ class SequenceWriter:
         self._true_poses: list[FloatArray] = []
         self._writing: deque[Future[None]] = deque()
         self._closed = False
-        _make_folders(folder)
-        self._threads = ThreadPoolExecutor(_THREADS, thread_name_prefix="sequence-writer")
+        check_free(folder, "folder")
+        with ExitStack() as opened:
+            self._draft = opened.enter_context(draft(folder))
+            for kind in ("rgb", "depth"):
+                (self._draft / kind).mkdir(parents=True)
+            self._threads = ThreadPoolExecutor(_THREADS, thread_name_prefix="sequence-writer")
+            opened.callback(self._threads.shutdown, cancel_futures=True)
+            self._opened = opened.pop_all()
 
     def __enter__(self) -> Self:
         return self
@@ -54,7 +61,7 @@ class SequenceWriter:
         if kind is None:
             self.close()
         else:
-            self._stop()
+            self._discard()
 
     def add(self, frame: Frame) -> None:
         """Take a frame, whose arrays must not change any more; waits only while eight are still unwritten.
@@ -66,7 +73,7 @@ class SequenceWriter:
             raise OutputError(f"{self._folder}: expected a sequence that is still recorded, got a frame after its end")
         self._check(frame)
         self._wait_until_unwritten(_LONGEST_QUEUE - 1)
-        self._writing.append(self._threads.submit(_write_images, self._folder, frame))
+        self._writing.append(self._threads.submit(_write_images, self._draft, frame))
         self._stamps_ns.append(frame.stamp_ns)
         if frame.has_truth and np.isfinite(frame.T_world_cam).all():
             self._true_stamps_ns.append(frame.stamp_ns)
@@ -74,16 +81,11 @@ class SequenceWriter:
 
     def close(self) -> None:
         """Wait for the images and write the lists; nothing happens the second time. Raises OutputError."""
-        if self._closed:
-            return
-        self._wait_until_unwritten(0)
-        self._stop()
-        try:
-            with TemporaryDirectory(prefix=".lists-", dir=self._folder) as draft:
-                for path in self._write_lists(Path(draft)):
-                    path.replace(self._folder / path.name)
-        except OSError as error:
-            raise _cannot_write(self._folder, error) from None
+        if not self._closed:
+            self._closed = True
+            with self._opened:
+                self._wait_until_unwritten(0)
+                self._write_lists()
 
     def _check(self, frame: Frame) -> None:
         if self._stamps_ns and frame.stamp_ns <= self._stamps_ns[-1]:
@@ -100,43 +102,28 @@ class SequenceWriter:
         try:
             while self._writing and (len(self._writing) > count or self._writing[0].done()):
                 self._writing.popleft().result()
-        except OSError as error:
-            self._stop()
-            raise _cannot_write(self._folder, error) from None
+        except OSError:
+            self._closed = True
+            with self._opened:  # the draft makes an OutputError of it
+                raise
 
-    def _stop(self) -> None:
+    def _discard(self) -> None:
+        """Not by the exception that ended the recording: the draft would tell a foreign OSError as its own."""
         self._closed = True
-        self._threads.shutdown(cancel_futures=True)
+        with suppress(CancelledError), self._opened:
+            raise CancelledError
 
-    def _write_lists(self, folder: Path) -> list[Path]:
-        """The files; those by which a reader knows a sequence come last."""
+    def _write_lists(self) -> None:
         stamps = [seconds_word(stamp_ns) for stamp_ns in self._stamps_ns]
         for kind in ("rgb", "depth"):
             lines = [f"{stamp} {kind}/{stamp}.png\n" for stamp in stamps]
-            (folder / f"{kind}.txt").write_text("".join(["# timestamp filename\n", *lines]), encoding="utf-8")
+            (self._draft / f"{kind}.txt").write_text("".join(["# timestamp filename\n", *lines]), encoding="utf-8")
         pairs = [f"{stamp} rgb/{stamp}.png {stamp} depth/{stamp}.png\n" for stamp in stamps]
-        (folder / "associations.txt").write_text("".join(pairs), encoding="utf-8")
+        (self._draft / "associations.txt").write_text("".join(pairs), encoding="utf-8")
         if self._true_poses:
             truth = Trajectory(np.array(self._true_stamps_ns, dtype=np.int64), np.array(self._true_poses))
-            write_tum(folder / "groundtruth.txt", truth)
-        write_camera(folder / CAMERA_FILE, self._camera, self._fps)
-        return sorted(folder.iterdir(), key=lambda path: path.name in ("rgb.txt", "associations.txt"))
-
-
-def _make_folders(folder: Path) -> None:
-    try:
-        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-            raise OutputError(
-                f"sequence folder: expected a new or empty folder, got {folder}; remove it or name another"
-            )
-        for kind in ("rgb", "depth"):
-            (folder / kind).mkdir(parents=True)
-    except OSError as error:
-        raise _cannot_write(folder, error) from None
-
-
-def _cannot_write(folder: Path, error: OSError) -> OutputError:
-    return OutputError(f"writing the sequence {folder} failed ({error.strerror}); make room or name another folder")
+            write_tum(self._draft / "groundtruth.txt", truth)
+        write_camera(self._draft / CAMERA_FILE, self._camera, self._fps)
 
 
 def _write_images(folder: Path, frame: Frame) -> None:

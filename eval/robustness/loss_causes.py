@@ -59,7 +59,7 @@ def _long_gap(c: LossContext) -> bool:
 
 
 def _fast_turn(c: LossContext) -> bool:
-    return _turn_deg(c) > FAST_TURN_DEG or c.yaw_rate_degps > FAST_TURN_DEGPS
+    return _turn_deg(c) > FAST_TURN_DEG or c.rotation_rate_degps > FAST_TURN_DEGPS
 
 
 def _fast_motion(c: LossContext) -> bool:
@@ -71,7 +71,7 @@ def _fading(c: LossContext) -> bool:
 
 
 def _turn_deg(c: LossContext) -> float:
-    return c.yaw_rate_degps * c.frame_gap_s
+    return c.rotation_rate_degps * c.frame_gap_s
 
 
 def _step_m(c: LossContext) -> float:
@@ -108,14 +108,12 @@ _RULES = (
     _Rule(
         "fast_turn",
         _fast_turn,
-        lambda c: f"the camera turned by {_turn_deg(c):.0f} deg from frame to frame ({c.yaw_rate_degps:.0f} deg/s)",
+        lambda c: f"the camera turned by {_turn_deg(c):.0f} deg in one frame ({c.rotation_rate_degps:.0f} deg/s)",
     ),
     _Rule(
         "fast_motion",
         _fast_motion,
-        lambda c: (
-            f"the camera moved by {_step_m(c):.2f} m from frame to frame, seeing what is {c.median_depth_m:.2f} m away"
-        ),
+        lambda c: f"the camera moved by {_step_m(c):.2f} m in one frame, seeing what is {c.median_depth_m:.2f} m away",
     ),
     _Rule(
         "low_overlap",

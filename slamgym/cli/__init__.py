@@ -8,7 +8,7 @@ from typing import Any
 import tyro
 
 from slamgym.cli.terminal import forget_output, notes, say
-from slamgym.errors import SlamgymError
+from slamgym.errors import ConfigError, SlamgymError
 
 EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130
@@ -28,6 +28,7 @@ def main(arguments: list[str] | None = None) -> None:
     """Entry point of the command `slamgym`. Exits with 0, 2 on bad input, 130 after Ctrl-C, 141 on a closed pipe."""
     arguments = sys.argv[1:] if arguments is None else arguments
     try:
+        _refuse_repeated(arguments)
         _parsed(arguments)()
     except SlamgymError as error:
         say(notes, f"slamgym: {error}", style="red")
@@ -37,6 +38,14 @@ def main(arguments: list[str] | None = None) -> None:
         sys.exit(EXIT_CLOSED_PIPE)
     except KeyboardInterrupt:
         sys.exit(EXIT_INTERRUPTED)
+
+
+def _refuse_repeated(arguments: list[str]) -> None:
+    """The parser would take the last one and forget the others."""
+    flags = [word.partition("=")[0].replace("_", "-") for word in arguments if word.startswith("--")]
+    for flag in flags:
+        if flags.count(flag) > 1:
+            raise ConfigError(f"{flag}: expected it once, got it {flags.count(flag)} times; give all values after one")
 
 
 def _parsed(arguments: list[str]) -> Callable[[], None]:

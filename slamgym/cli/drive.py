@@ -13,9 +13,9 @@ from slamgym.agents import AGENTS, Agent
 from slamgym.cli.options import option_group
 from slamgym.cli.terminal import progress_bar
 from slamgym.errors import ConfigError, unknown_word
+from slamgym.files import check_free
 from slamgym.params import DriveParams
 from slamgym.rollout import Episode, RobotEnv
-from slamgym.run_folder import check_free
 
 DriveOptions = option_group(DriveParams)
 
@@ -41,7 +41,7 @@ class DriveCommand:
         """The episode that `run` makes of the environment, with a progress bar."""
         self._check()
         env = gym.make(env_id, max_episode_steps=self.max_episode_steps, **vars(self.drive), **keywords)
-        check_free(self.out)
+        check_free(self.out, "folder")
         try:
             with progress_bar("{task.completed:.1f} m") as progress:
                 task = progress.add_task("loading", total=None)

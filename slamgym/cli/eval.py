@@ -8,10 +8,9 @@ from typing import Annotated, Any
 
 import pandas as pd
 import tyro
-from rich.console import Console
 
 from slamgym.cli.options import option_group
-from slamgym.cli.terminal import notes, printing, results, say, told_warnings, working
+from slamgym.cli.terminal import notes, printing, results, say, show_table, told_warnings, working
 from slamgym.errors import ConfigError, OutputError, TrajectoryError
 from slamgym.eval.evaluation import Evaluation, evaluate_at
 from slamgym.eval.plots import evaluation_plots, save_figure
@@ -37,8 +36,6 @@ COLUMNS: dict[str, tuple[str, str]] = {
 
 SCALE_COLUMN = {"scale": ("scale", "{:.3g}")}
 LONGEST_NAME = 18
-WIDTH = 100
-"""Columns that the table may take; a narrower terminal breaks its lines, but no figure is cut."""
 
 EvalOptions = option_group(EvalParams)
 
@@ -122,7 +119,7 @@ class Eval:
         else:
             columns = COLUMNS | (SCALE_COLUMN if rows[0]["alignment"] == "sim3" else {})
             shown = [_shown(row, name) for row, name in zip(rows, names, strict=True)]
-            Console(width=max(results.width, WIDTH)).print(figures_table(columns, shown))
+            show_table(figures_table(columns, shown))
             for line in self._caption(rows):
                 say(results, line, style="dim")
 

@@ -6,9 +6,9 @@ import tyro
 
 from slamgym.cli.drive import DriveCommand
 from slamgym.cli.options import option_group
-from slamgym.cli.terminal import notes, printing, results, say
+from slamgym.cli.terminal import notes, printing, results, say, show_table
 from slamgym.params import SlamInLoopParams
-from slamgym.report_table import episode_table, loss_lines
+from slamgym.report_table import episode_table, remarks
 from slamgym.rollout import EpisodeInterrupted, run_episode
 from slamgym.run_folder import write_run
 
@@ -36,7 +36,7 @@ class Run(DriveCommand):
             raise
         folder = write_run(episode, self.out)
         with printing():
-            results.print(episode_table([episode]))
-            for line in loss_lines(episode.summary):
+            show_table(episode_table([episode]))
+            for line in remarks(episode.summary):
                 say(results, line)
             say(results, f"run folder: {folder}")

@@ -11,6 +11,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.status import Status
+from rich.table import Table
 from rich.text import Text
 
 from slamgym.errors import OutputError, TrajectoryWarning
@@ -18,6 +19,14 @@ from slamgym.eval.plots.names import printable
 
 results = Console()
 notes = Console(stderr=True)
+
+WIDTH = 100
+"""Columns that a table may take; a narrower terminal breaks its lines, but no figure is cut."""
+
+
+def show_table(table: Table) -> None:
+    """Print a table of results."""
+    Console(width=max(results.width, WIDTH)).print(table)
 
 
 def say(console: Console, text: str, style: str | None = None) -> None:

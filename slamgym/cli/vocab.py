@@ -10,19 +10,20 @@ from typing import Annotated
 import tyro
 
 from slamgym.cli.terminal import notes, printing, progress_bar, results, say, working
-from slamgym.errors import ConfigError, OutputError
-from slamgym.files import write_atomically
+from slamgym.errors import ConfigError
+from slamgym.files import check_free, write_atomically
 from slamgym.slam.fetch_vocabulary import ORBVOC, Source, fetch_vocabulary, fetched_vocabulary
 from slamgym.slam.train_vocabulary import (
+    FEATURES,
     IMAGES_PER_HOUSE,
     TRAINING_SEEDS,
-    house_images,
+    house_descriptors,
     image_descriptors,
     image_files,
     read_image,
 )
-from slamgym.slam.vocabulary import check_new_file, vocabulary_info, vocabulary_path
-from slamgym.slam.vocabulary_file import Descriptors, Vocabulary
+from slamgym.slam.vocabulary import vocabulary_path
+from slamgym.slam.vocabulary_file import Descriptors, Vocabulary, vocabulary_info
 from slamgym.slam.vocabulary_tree import check_shape, train
 
 _NAMED_FILES = 5
@@ -51,17 +52,17 @@ class Train:
         ),
     ] = None
     images_per_house: Annotated[int, tyro.conf.arg(help="images rendered of each house")] = IMAGES_PER_HOUSE
-    features: Annotated[int, tyro.conf.arg(help="ORB features an image")] = 1000
+    features: Annotated[int, tyro.conf.arg(help="ORB features an image")] = FEATURES
     branching: Annotated[int, tyro.conf.arg(help="children of a node")] = 6
     depth: Annotated[int, tyro.conf.arg(help="levels of the tree; ORB-SLAM needs 6 to compare images well")] = 6
     seed: Annotated[int, tyro.conf.arg(help="of the clustering: same images and seed, same vocabulary")] = 0
 
     def __call__(self) -> None:
         self._check()
-        check_new_file(self.out)
+        check_free(self.out, "file")
         start = perf_counter()
         descriptors = self._house_descriptors() if self.images is None else self._folder_descriptors(self.images)
-        path = _write(self._trained(descriptors), self.out)
+        path = write_atomically(self.out, self._trained(descriptors).to_text())
         info = vocabulary_info(path)
         took_s = perf_counter() - start
         with printing():
@@ -73,13 +74,12 @@ class Train:
     def _check(self) -> None:
         check_shape(self.branching, self.depth)
         if self.images is not None and self.seeds is not None:
-            raise ConfigError("expected one of --images and --seeds, got both: train on a folder or on houses")
-        counts = {"max_images": self.max_images, "images_per_house": self.images_per_house, "features": self.features}
-        for name, value in counts.items():
-            if value < 1:
-                raise ConfigError(f"expected {name} of at least 1, got {value}")
-        if any(seed < 0 for seed in (self.seed, *(self.seeds or ()))):
-            raise ConfigError("expected seeds of at least 0, got one below")
+            raise ConfigError("expected one of --images and --seeds, got both; train on a folder or on houses")
+        _check_least("--max-images", self.max_images, least=1)
+        _check_least("--images-per-house", self.images_per_house, least=1)
+        _check_least("--features", self.features, least=1)
+        _check_least("--seed", self.seed, least=0)
+        _check_least("--seeds", min(self.seeds or [0]), least=0)
         if any(seed < TRAINING_SEEDS.start for seed in self.seeds or ()):
             say(
                 notes,
@@ -91,14 +91,9 @@ class Train:
     def _house_descriptors(self) -> list[Descriptors]:
         """One array an image."""
         seeds = TRAINING_SEEDS if self.seeds is None else self.seeds
-        found = []
+        images = house_descriptors(seeds, self.images_per_house, self.features)
         with progress_bar("{task.completed} images") as progress:
-            task = progress.add_task("houses", total=len(seeds) * self.images_per_house)
-            for seed in seeds:
-                for rgb in house_images(seed, self.images_per_house):
-                    found.append(image_descriptors(rgb, self.features))
-                    progress.advance(task)
-        return found
+            return list(progress.track(images, total=len(seeds) * self.images_per_house, description="houses"))
 
     def _folder_descriptors(self, folder: Path) -> list[Descriptors]:
         """One array an image that can be read."""
@@ -112,7 +107,9 @@ class Train:
                 else:
                     found.append(image_descriptors(rgb, self.features))
         if not found:
-            raise ConfigError(f"expected images that can be read in {folder}, got {len(files)} that cannot")
+            raise ConfigError(
+                f"expected images that can be read in {folder}, got {len(files)} that cannot; name another folder"
+            )
         if unreadable:
             say(notes, f"slamgym: warning: left out, since unreadable: {_some_of(unreadable)}", style="yellow")
         return found
@@ -169,7 +166,7 @@ class Fetch:
 
     def __call__(self) -> None:
         if not 0 < self.timeout_s < float("inf"):
-            raise ConfigError(f"expected a timeout_s above 0, got {self.timeout_s:g}")
+            raise ConfigError(f"expected --timeout-s above 0, got {self.timeout_s:g}; leave it out or give more")
         source = replace(ORBVOC, url=self.url)
         with working("looking for the vocabulary"):
             path = fetched_vocabulary(self.out, source)
@@ -205,11 +202,9 @@ class Vocab:
         self.command()
 
 
-def _write(vocabulary: Vocabulary, path: Path) -> Path:
-    try:
-        return write_atomically(path, vocabulary.to_text().encode())
-    except OSError as error:
-        raise OutputError(f"cannot write {path}: {error.strerror}; make room or name another file") from None
+def _check_least(option: str, value: int, least: int) -> None:
+    if value < least:
+        raise ConfigError(f"expected {option} of at least {least}, got {value}; leave it out or give more")
 
 
 def _say_use(path: Path) -> None:

@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import entry_points
-from typing import Any, ClassVar, Protocol, TypeVar, cast
+from typing import Any, ClassVar, Protocol, cast
 
 import numpy as np
-from pydantic import BaseModel, ValidationError
 
 from slamgym.camera import PinholeCamera
+from slamgym.checked_params import Params
 from slamgym.errors import ConfigError, unknown_word
 from slamgym.types import Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
@@ -24,6 +24,16 @@ class SlamConfig:
     options: Mapping[str, Any] = field(default_factory=dict)
 
 
+class SlamOptions(Params):
+    """The base of each backend's own options, and those of a backend that has none."""
+
+    kind: ClassVar[str] = "slam option"
+
+    @classmethod
+    def _label(cls, name: str) -> str:
+        return f"{cls.kind} {name!r}"
+
+
 class Backend(Protocol):
     """One SLAM run over one sequence. It lives in a worker process, so it may crash, hang or print as it likes.
 
@@ -31,8 +41,8 @@ class Backend(Protocol):
     `offline`, `check` and `versions` are used in the user's process, the rest in the worker's.
     """
 
-    Options: ClassVar[type[BaseModel]]
-    """Accepted `slam_options`; an unknown key is an error."""
+    Options: ClassVar[type[SlamOptions]]
+    """Accepted `slam_options`, each with a default; an unknown key is an error. On the command line they are text."""
     loop_closures: ClassVar[tuple[bool, ...]]
     """Values of `loop_closure` that it can honour, beside None."""
     has_background_threads: ClassVar[bool]
@@ -43,7 +53,9 @@ class Backend(Protocol):
 
     @classmethod
     def check(cls, config: SlamConfig) -> None:
-        """Raise SlamError, saying what to install, when something is missing that can be seen without starting."""
+        """Raise SlamError, saying what to install, when something is missing that can be seen without starting, and
+        ConfigError for options, valid each by itself, that cannot be honoured together.
+        """
         ...
 
     @classmethod
@@ -99,35 +111,33 @@ def load_backend(name: str) -> type[Backend]:
         raise ConfigError(f"slam backend {name!r}: expected an importable 'module:class'; {error}") from error
     if missing := [part for part in PARTS if not hasattr(backend, part)]:
         raise ConfigError(f"slam backend {name!r}: expected a class as slamgym.slam.backend.Backend, without {missing}")
+    if not (isinstance(backend.Options, type) and issubclass(backend.Options, SlamOptions)):
+        raise ConfigError(
+            f"slam backend {name!r}: expected Options derived from slamgym.slam.backend.SlamOptions, got "
+            f"{backend.Options!r}; derive it from that, which is a pydantic model"
+        )
     return cast(type[Backend], backend)
 
 
-Options = TypeVar("Options", bound=BaseModel)
+def parse_options(model: type[SlamOptions], options: Mapping[str, Any]) -> SlamOptions:
+    """Options as the backend's model; raises ConfigError."""
+    return model.checked(options)
 
 
-def parse_options(model: type[Options], options: Mapping[str, Any]) -> Options:
-    """Options as the backend's model; raises ConfigError that names the option and the closest valid one."""
-    for key in options:
-        if key not in model.model_fields:
-            raise ConfigError(unknown_word("slam option", key, model.model_fields))
-    try:
-        return model.model_validate(dict(options))
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(map(str, first["loc"]))
-        raise ConfigError(f"slam option {where!r}: {first['msg']}, got {first['input']!r}") from None
+def check_config(name: str, config: SlamConfig) -> type[Backend]:
+    """The backend's class, when it can honour the configuration as far as the user's process can tell.
 
-
-def check_config(name: str, config: SlamConfig) -> None:
-    """Refuse, in the user's process, what the backend cannot honour; raises ConfigError or SlamError."""
+    Raises ConfigError or SlamError.
+    """
     backend = load_backend(name)
-    parse_options(backend.Options, config.options)
+    backend.Options.checked(config.options)
     if config.loop_closure is not None and config.loop_closure not in backend.loop_closures:
         choices = ", ".join(map(str, (None, *backend.loop_closures)))
         raise ConfigError(
             f"slam backend {name!r}: expected loop_closure as one of {choices}, got {config.loop_closure}"
         )
     backend.check(config)
+    return backend
 
 
 def untracked(state: TrackingState, event: SlamEvent = SlamEvent.NONE, tracked_points: int = 0) -> TrackResult:

@@ -6,6 +6,8 @@ lost or guessed, nobody can know: a frame counts as tracked when the trajectory 
 
 import tempfile
 import warnings
+from collections.abc import Callable
+from contextlib import chdir
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,11 +18,12 @@ from slamgym.errors import ConfigError, SlamError, TrajectoryError, TrajectoryWa
 from slamgym.eval.datasets import SequenceWriter
 from slamgym.eval.datasets.camera_file import TUM_DEPTH_SCALE
 from slamgym.eval.trajectories import Trajectory, match_stamps, read_trajectory
-from slamgym.slam.backend import SlamConfig, parse_options, untracked
+from slamgym.files import recorded_hash
+from slamgym.slam.backend import SlamConfig, untracked
 from slamgym.slam.command_template import PLACEHOLDERS, Template
 from slamgym.slam.orb_settings import OrbOptions, classic_settings
-from slamgym.slam.program import run
-from slamgym.slam.vocabulary import RECORDED_DIGITS, file_sha256, vocabulary_hash, vocabulary_path
+from slamgym.slam.program import run_program
+from slamgym.slam.vocabulary import vocabulary_hash, vocabulary_path
 from slamgym.types import Frame, IntArray, SlamTrajectory, TrackingState, TrackResult
 
 
@@ -54,7 +57,7 @@ class Command:
 
     @classmethod
     def check(cls, config: SlamConfig) -> None:
-        options = parse_options(CommandOptions, config.options)
+        options = CommandOptions.checked(config.options)
         template = Template.parse(options.command)
         _refuse_unused(config, options, template)
         if Path(options.trajectory).is_absolute() or ".." in Path(options.trajectory).parts:
@@ -74,18 +77,18 @@ class Command:
 
     @classmethod
     def versions(cls, config: SlamConfig) -> dict[str, str]:
-        options = parse_options(CommandOptions, config.options)
+        options = CommandOptions.checked(config.options)
         template = Template.parse(options.command)
-        versions = {f"{path.name}_sha256": file_sha256(path)[:RECORDED_DIGITS] for path in template.files()}
+        versions = {f"{word}_sha256": recorded_hash(path) for word, path in template.files().items()}
         if options.settings is not None:
-            versions["settings_sha256"] = file_sha256(options.settings.expanduser())[:RECORDED_DIGITS]
+            versions["settings_sha256"] = recorded_hash(options.settings.expanduser())
         if "vocabulary" in template.placeholders:
             versions["vocabulary_sha256"] = vocabulary_hash(options.vocabulary)
         return versions
 
     def __init__(self, config: SlamConfig) -> None:
         self._config = config
-        self._options = parse_options(CommandOptions, config.options)
+        self._options = CommandOptions.checked(config.options)
         self._template = Template.parse(self._options.command)
         self._folder = tempfile.TemporaryDirectory(prefix="command-")
         self._sequence = Path(self._folder.name) / "sequence"
@@ -103,26 +106,24 @@ class Command:
         self._writer.close()
         saved = Trajectory(np.empty(0, np.int64), np.empty((0, 4, 4)))
         if self._stamps_ns:
-            path = self._started_in / self._options.trajectory
-            path.parent.mkdir(parents=True)
-            run(self._template.filled(self._values()), self._started_in, self._options.accept_exit_codes)
-            saved = _read(path)
+            path = Path(self._options.trajectory)
+            (self._started_in / path.parent).mkdir(parents=True)
+            run_program(self._template.filled(self._values()), self._started_in, self._options.accept_exit_codes)
+            with chdir(self._started_in):  # what is said about the file outlives this folder, and does not name it
+                saved = _read(path)
         return at_frames(saved, np.array(self._stamps_ns, dtype=np.int64), self._config.fps)
 
     def _values(self) -> dict[str, object]:
-        """What stands for each placeholder of the command."""
-        return {
-            "vocabulary": self._vocabulary(),
-            "settings": self._settings(),
-            "sequence": self._sequence,
-            "associations": self._sequence / "associations.txt",
-            "trajectory": self._started_in / self._options.trajectory,
-            "loop_closure": int(self._config.loop_closure is not False),
+        """What stands for each placeholder that the command has; no other is looked up or written."""
+        values: dict[str, Callable[[], object]] = {
+            "vocabulary": lambda: vocabulary_path(self._options.vocabulary).absolute(),
+            "settings": self._settings,
+            "sequence": lambda: self._sequence,
+            "associations": lambda: self._sequence / "associations.txt",
+            "trajectory": lambda: self._started_in / self._options.trajectory,
+            "loop_closure": lambda: int(self._config.loop_closure is not False),
         }
-
-    def _vocabulary(self) -> Path | None:
-        used = "vocabulary" in self._template.placeholders
-        return vocabulary_path(self._options.vocabulary).absolute() if used else None
+        return {name: values[name]() for name in self._template.placeholders}
 
     def _settings(self) -> Path:
         if self._options.settings is not None:

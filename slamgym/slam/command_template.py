@@ -51,10 +51,11 @@ class Template:
         arguments = [word.format_map(values) for word in self.words[1:]]
         return [self.program() or self.words[0], *(str(_path(word) or word) for word in arguments)]
 
-    def files(self) -> list[Path]:
-        """The program, if it is found, and the files of the user's among its arguments."""
+    def files(self) -> dict[str, Path]:
+        """The program, if it is found, and the files of the user's among its arguments, by the words that name them."""
         paths = map(_path, self.filled(dict.fromkeys(PLACEHOLDERS, "")))
-        return [path for path in paths if path is not None and path.is_file()]
+        named = zip(self.words, paths, strict=True)
+        return {word: path for word, path in named if path is not None and path.is_file()}
 
 
 def _path(word: str) -> Path | None:

@@ -3,7 +3,6 @@
 import os
 import shutil
 import tarfile
-import tempfile
 import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -13,7 +12,8 @@ from pathlib import Path
 from urllib.error import HTTPError, URLError
 
 from slamgym.errors import OutputError, SlamError
-from slamgym.slam.vocabulary import cache_folders, check_new_file, file_sha256
+from slamgym.files import check_free, draft, file_sha256
+from slamgym.slam.vocabulary import cache_folders
 
 MAX_ARCHIVE_BYTES = 100_000_000
 MAX_TEXT_BYTES = 500_000_000
@@ -32,10 +32,8 @@ class Source:
     member: str = "ORBvoc.txt"
 
 
-# 42,527,984 and 145,250,924 bytes. Both hashes agree in independent places: that of the archive in the Git LFS pointer
-# of halajun/VDO_SLAM and in an installer that downloads it from UZ-SLAMLab/ORB_SLAM3; that of the text in the Git LFS
-# pointer of yanyan-li/PlanarSLAM, in the data set fontan/anyfeature_vocabulary on Hugging Face and in several protocols
-# of experiments on GitHub.
+# 42,527,984 and 145,250,924 bytes. The hashes are those of two Git LFS pointers on GitHub: of the archive,
+# Vocabulary/ORBvoc.txt.tar.gz in halajun/VDO_SLAM; of the text, Vocabulary/ORBvoc.txt in yanyan-li/PlanarSLAM.
 ORBVOC = Source(
     url="https://github.com/raulmur/ORB_SLAM2/raw/master/Vocabulary/ORBvoc.txt.tar.gz",
     archive_sha256="ff2d0e82a69a8f4c5c002e3a0dff82a00e5872e1659fac1b996f41166b92693b",
@@ -62,17 +60,13 @@ def fetch_vocabulary(
     when `out` is something else already or cannot be written; neither leaves a file.
     """
     if out is not None:
-        check_new_file(out)
+        check_free(out, "file")
     path = _writable_cache() / source.member if out is None else out
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=f".{path.name}-", dir=path.parent) as folder:
-            archive, text = Path(folder) / "archive", Path(folder) / "text"
-            _download(source, archive, timeout_s, on_bytes)
-            _unpack(source, archive, text)
-            return text.replace(path)
-    except OSError as error:
-        raise OutputError(f"cannot write the vocabulary {path}: {error.strerror}; make room or name another") from None
+    with draft(path) as text:
+        archive = text.with_name(f"{text.name}.tar.gz")
+        _download(source, archive, timeout_s, on_bytes)
+        _unpack(source, archive, text)
+    return path
 
 
 def _holds(path: Path, sha256: str) -> bool:
@@ -97,7 +91,7 @@ def _download(
     with archive.open("wb") as file:
         for chunk in _chunks(source, timeout_s, on_bytes):
             file.write(chunk)
-    _verify(archive, source.archive_sha256, source)
+    _verify(archive, "archive", source.archive_sha256, source)
 
 
 def _chunks(source: Source, timeout_s: float, on_bytes: Callable[[int, int | None], None] | None) -> Iterator[bytes]:
@@ -137,13 +131,13 @@ def _unpack(source: Source, archive: Path, text: Path) -> None:
         assert content is not None  # since it is a regular file
         with content, text.open("wb") as file:
             shutil.copyfileobj(content, file)
-    _verify(text, source.text_sha256, source)
+    _verify(text, "text", source.text_sha256, source)
 
 
-def _verify(path: Path, sha256: str, source: Source) -> None:
+def _verify(path: Path, what: str, sha256: str, source: Source) -> None:
     found = file_sha256(path)
     if found != sha256:
-        raise _failed(source, f"expected its {path.name} to have the SHA-256 {sha256}, got {found}")
+        raise _failed(source, f"expected its {what} to have the SHA-256 {sha256}, got {found}")
 
 
 def _failed(source: Source, reason: str) -> SlamError:

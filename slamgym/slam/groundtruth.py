@@ -1,23 +1,16 @@
 """The oracle: a SLAM that is never wrong. It shows what the harness itself adds to the figures: nothing."""
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
 
 from slamgym.geometry import inverse
-from slamgym.slam.backend import SlamConfig, untracked
+from slamgym.slam.backend import SlamConfig, SlamOptions, untracked
 from slamgym.types import FloatArray, Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
-
-
-class GroundTruthOptions(BaseModel):
-    """It has none."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class GroundTruth:
     """Answers each frame's true pose relative to the first one; a frame whose pose is not known is not tracked."""
 
-    Options: type[BaseModel] = GroundTruthOptions
+    Options: type[SlamOptions] = SlamOptions
     loop_closures = (False,)
     has_background_threads = False
     offline = False
@@ -31,8 +24,7 @@ class GroundTruth:
         return {}
 
     def __init__(self, config: SlamConfig) -> None:  # noqa: ARG002
-        self._stamps_ns: list[int] = []
-        self._poses: list[FloatArray] = []
+        self._poses: list[tuple[int, FloatArray, int]] = []
         self._T_map_world: FloatArray | None = None
         self._event = SlamEvent.INITIALIZED
 
@@ -41,8 +33,7 @@ class GroundTruth:
             return self._blind()
         event, self._event = self._event, SlamEvent.NONE
         T_map_cam = self.locate(frame.T_world_cam)
-        self._stamps_ns.append(frame.stamp_ns)
-        self._poses.append(T_map_cam)
+        self._poses.append((frame.stamp_ns, T_map_cam, 0))
         return TrackResult(TrackingState.OK, T_map_cam, map_id=0, tracked_points=0, event=event)
 
     def locate(self, T_world_cam: FloatArray) -> FloatArray:
@@ -52,8 +43,7 @@ class GroundTruth:
         return self._T_map_world @ T_world_cam
 
     def finish(self) -> SlamTrajectory:
-        stamps_ns = np.array(self._stamps_ns, dtype=np.int64)
-        return SlamTrajectory(stamps_ns, np.array(self._poses).reshape(-1, 4, 4), np.zeros_like(stamps_ns))
+        return SlamTrajectory.of(self._poses)
 
     def _blind(self) -> TrackResult:
         """Answer for a frame without a true pose; the next one that has one tells that it is found again."""

@@ -130,11 +130,11 @@ def loss_context(moments: Sequence[Moment], overlap: float) -> LossContext:
     """
     *before, now = moments
     tracked = [moment for moment in before if moment.tracked]
-    speed_mps, yaw_rate_degps = _motion(moments)
+    speed_mps, rotation_rate_degps = _motion(moments)
     return explain(
         LossContext(
             speed_mps=speed_mps,
-            yaw_rate_degps=yaw_rate_degps,
+            rotation_rate_degps=rotation_rate_degps,
             frame_gap_s=now.gap_s,
             usual_frame_gap_s=_median(moment.gap_s for moment in tracked),
             overlap=overlap,

@@ -6,6 +6,7 @@ where a thread that waits for a core uses no CPU either.
 """
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from slamgym.errors import ConfigError
@@ -50,12 +51,16 @@ def only_idled(before: Look, after: Look) -> bool:
     )
 
 
-def wait_until_idle(pid: int, limit_s: float) -> bool:
-    """Block until the process only idles or is gone; False when that took longer than `limit_s` seconds."""
+def wait_until_idle(pid: int, limit_s: float, on_look: Callable[[], None] = lambda: None) -> bool:
+    """Block until the process only idles or is gone; False when that took longer than `limit_s` seconds.
+
+    on_look: called at every look; what it raises ends the wait.
+    """
     deadline = time.monotonic() + limit_s
     before = look(pid)
     while time.monotonic() < deadline:
         time.sleep(LOOK_INTERVAL_S)
+        on_look()
         after = look(pid)
         if only_idled(before, after):
             return True

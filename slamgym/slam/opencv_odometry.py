@@ -5,7 +5,7 @@ import numpy as np
 from pydantic import Field
 
 from slamgym.errors import SlamError
-from slamgym.slam.backend import SlamConfig, parse_options, untracked
+from slamgym.slam.backend import SlamConfig, untracked
 from slamgym.slam.rgbd_matcher import Matcher, MatchOptions, View
 from slamgym.types import FloatArray, Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
@@ -32,8 +32,7 @@ class OpenCvOdometry:
     offline = False
 
     @classmethod
-    def check(cls, config: SlamConfig) -> None:
-        parse_options(OpenCvOptions, config.options)
+    def check(cls, config: SlamConfig) -> None:  # noqa: ARG003
         if not hasattr(cv2, "OdometrySettings"):
             raise SlamError(
                 f"slam backend 'opencv': expected OpenCV 5, which has RGB-D odometry, got {cv2.__version__}; "
@@ -47,7 +46,7 @@ class OpenCvOdometry:
     def __init__(self, config: SlamConfig) -> None:
         # One run, one core: more threads are no quicker, and the answers are the same to the last bit.
         cv2.setNumThreads(1)
-        self._options = parse_options(OpenCvOptions, config.options)
+        self._options = OpenCvOptions.checked(config.options)
         self._matcher = Matcher(config.camera, self._options)
         self._reference: View | None = None
         self._T_map_reference: FloatArray = np.eye(4)
@@ -74,11 +73,7 @@ class OpenCvOdometry:
         return untracked(TrackingState.LOST)
 
     def finish(self) -> SlamTrajectory:
-        return SlamTrajectory(
-            stamps_ns=np.array([stamp_ns for stamp_ns, _, _ in self._tracked], dtype=np.int64),
-            T_map_cam=np.array([T for _, T, _ in self._tracked]).reshape(-1, 4, 4),
-            map_id=np.array([map_id for *_, map_id in self._tracked], dtype=np.int64),
-        )
+        return SlamTrajectory.of(self._tracked)
 
     def _start_map(self, view: View) -> TrackResult:
         self._map_id += 1

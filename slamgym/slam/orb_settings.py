@@ -1,4 +1,4 @@
-"""What ORB-SLAM2 and ORB-SLAM3 have in common: options, settings files, and how files are handed to them."""
+"""What ORB-SLAM2 and ORB-SLAM3 have in common: options, times, settings files, and how files are handed over."""
 
 import os
 from collections.abc import Iterator, Mapping
@@ -6,9 +6,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from slamgym.slam.backend import SlamConfig
+from slamgym.slam.backend import SlamConfig, SlamOptions
 
 # No worker opens the viewer, but its settings are compulsory; programs of the user's may open it.
 _VIEWER = {
@@ -25,10 +25,8 @@ _VIEWER = {
 }
 
 
-class OrbOptions(BaseModel):
+class OrbOptions(SlamOptions):
     """The settings of the ORB-SLAMs' own files for RGB-D cameras, with their usual values."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     vocabulary: Path | None = Field(None, description="DBoW2 text file; None: the one of slamgym")
     features: int = Field(1000, ge=100, le=20_000, description="ORB features an image")
@@ -38,6 +36,24 @@ class OrbOptions(BaseModel):
     min_fast: int = Field(7, ge=1, le=255, description="FAST threshold where the first finds nothing")
     baseline: float = Field(0.07732, gt=0, description="baseline of the virtual stereo camera, metres")
     depth_threshold: float = Field(40.0, gt=0, description="largest depth of a close point, in baselines")
+
+
+class Clock:
+    """Stamps as ORB-SLAM keeps them, seconds in a double: from the first frame on they come back to the nanosecond."""
+
+    def __init__(self) -> None:
+        self._first_ns: int | None = None
+
+    @property
+    def first_ns(self) -> int:
+        """Stamp of the first frame, 0 before there is one."""
+        return self._first_ns or 0
+
+    def seconds(self, stamp_ns: int) -> float:
+        """Seconds since the first frame that was asked about."""
+        if self._first_ns is None:
+            self._first_ns = stamp_ns
+        return (stamp_ns - self._first_ns) * 1e-9
 
 
 def settings(config: SlamConfig, options: OrbOptions) -> str:

@@ -20,9 +20,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from slamgym.errors import SlamError
-from slamgym.slam.backend import SlamConfig, parse_options, untracked
-from slamgym.slam.orb_settings import OrbOptions, classic_settings, memory_file
-from slamgym.slam.vocabulary import RECORDED_DIGITS, file_sha256, vocabulary_hash, vocabulary_path
+from slamgym.files import recorded_hash
+from slamgym.slam.backend import SlamConfig, untracked
+from slamgym.slam.orb_settings import Clock, OrbOptions, classic_settings, memory_file
+from slamgym.slam.vocabulary import vocabulary_hash, vocabulary_path
 from slamgym.types import FloatArray, Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
 _INSTALL = (
@@ -47,29 +48,29 @@ class OrbSlam2:
     @classmethod
     def check(cls, config: SlamConfig) -> None:
         _module_path()
-        vocabulary_path(parse_options(OrbOptions, config.options).vocabulary)
+        vocabulary_path(OrbOptions.checked(config.options).vocabulary)
 
     @classmethod
     def versions(cls, config: SlamConfig) -> dict[str, str]:
-        options = parse_options(OrbOptions, config.options)
+        options = OrbOptions.checked(config.options)
         return {
-            "orbslam2_sha256": file_sha256(_module_path())[:RECORDED_DIGITS],
+            "orbslam2_sha256": recorded_hash(_module_path()),
             "vocabulary_sha256": vocabulary_hash(options.vocabulary),
         }
 
     def __init__(self, config: SlamConfig) -> None:
-        options = parse_options(OrbOptions, config.options)
+        options = OrbOptions.checked(config.options)
         self._library = _load()
         text = classic_settings(config, options, is_rgb=True, depth_units=1.0)
         self._slam = _start(self._library, vocabulary_path(options.vocabulary), text)
-        self._first_stamp_ns: int | None = None
+        self._clock = Clock()
         self._origin_s: float | None = None
         self._map_id = -1
         self._was_ok = False
         self._tracked_ns: list[int] = []
 
     def track(self, frame: Frame) -> TrackResult:
-        self._slam.process_image_rgbd(frame.rgb, frame.depth, self._seconds(frame.stamp_ns))
+        self._slam.process_image_rgbd(frame.rgb, frame.depth, self._clock.seconds(frame.stamp_ns))
         tracked_points = self._slam.get_num_matched_features()
         was_ok, self._was_ok = self._was_ok, self._slam.get_tracking_state() == self._library.TrackingState.OK
         if not self._was_ok:
@@ -84,7 +85,7 @@ class OrbSlam2:
         """The trajectory of the map that is left. No shutdown: it empties the trajectory, and the process ends."""
         points = self._slam.get_trajectory_points() if self._has_map() else []
         seconds = np.array([point[0] for point in points], dtype=np.float64)
-        stamps_ns = np.rint(seconds * 1e9).astype(np.int64) + (self._first_stamp_ns or 0)
+        stamps_ns = np.rint(seconds * 1e9).astype(np.int64) + self._clock.first_ns
         stamps_ns, first = np.unique(stamps_ns, return_index=True)
         is_tracked = np.isin(stamps_ns, self._tracked_ns)
         T_map_cam = to_poses([points[row] for row in first[is_tracked]])
@@ -101,12 +102,6 @@ class OrbSlam2:
     def _has_map(self) -> bool:
         states = self._library.TrackingState
         return self._map_id >= 0 and self._slam.get_tracking_state() in (states.OK, states.LOST)
-
-    def _seconds(self, stamp_ns: int) -> float:
-        """ORB-SLAM2 keeps seconds as a double: counted from the first frame they come back exact to the nanosecond."""
-        if self._first_stamp_ns is None:
-            self._first_stamp_ns = stamp_ns
-        return (stamp_ns - self._first_stamp_ns) * 1e-9
 
 
 def to_poses(points: Sequence[Sequence[float]]) -> FloatArray:

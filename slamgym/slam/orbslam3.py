@@ -12,23 +12,19 @@ import numpy as np
 
 from slamgym.errors import SlamError
 from slamgym.geometry import from_quaternion
-from slamgym.slam.backend import SlamConfig, parse_options, untracked
+from slamgym.slam.backend import SlamConfig, untracked
 from slamgym.slam.map_tracker import MapTracker, final_trajectory
-from slamgym.slam.orb_settings import OrbOptions, memory_file, settings
+from slamgym.slam.orb_settings import Clock, OrbOptions, memory_file, settings
 from slamgym.slam.vocabulary import vocabulary_hash, vocabulary_path
 from slamgym.types import FloatArray, Frame, IntArray, SlamTrajectory, TrackingState, TrackResult
 
 _INSTALL = "pip install pyorbslam3, and on Debian: apt install libgl1 libegl1 libopengl0 libglx0 libsm6 libice6"
 
 
-class OrbSlam3Options(OrbOptions):
-    """ORB-SLAM3 has no options but those that it shares with ORB-SLAM2."""
-
-
 class OrbSlam3:
     """One run of ORB-SLAM3. It has to be alone in its process: the maps are followed by what the process prints."""
 
-    Options = OrbSlam3Options
+    Options = OrbOptions
     loop_closures = (True, False)
     has_background_threads = True
     offline = False
@@ -37,25 +33,25 @@ class OrbSlam3:
     def check(cls, config: SlamConfig) -> None:
         if find_spec("pyorbslam3") is None:
             raise SlamError(f"slam backend 'orbslam3': the module pyorbslam3 is missing; {_INSTALL}")
-        vocabulary_path(parse_options(OrbSlam3Options, config.options).vocabulary)
+        vocabulary_path(OrbOptions.checked(config.options).vocabulary)
 
     @classmethod
     def versions(cls, config: SlamConfig) -> dict[str, str]:
-        options = parse_options(OrbSlam3Options, config.options)
+        options = OrbOptions.checked(config.options)
         return {"pyorbslam3": version("pyorbslam3"), "vocabulary_sha256": vocabulary_hash(options.vocabulary)}
 
     def __init__(self, config: SlamConfig) -> None:
-        options = parse_options(OrbSlam3Options, config.options)
+        options = OrbOptions.checked(config.options)
         self._output = _OwnOutput()
         self._slam = _start(vocabulary_path(options.vocabulary), settings(config, options))
         self._maps = MapTracker()
-        self._first_stamp_ns: int | None = None
+        self._clock = Clock()
         self._online: list[tuple[int, FloatArray, int]] = []
 
     def track(self, frame: Frame) -> TrackResult:
         # Before tracking: what the mapping threads printed since the last frame holds for this one.
         self._maps.read(self._output.new_text())
-        answer = self._slam.track_rgbd(frame.rgb, frame.depth, self._seconds(frame.stamp_ns))
+        answer = self._slam.track_rgbd(frame.rgb, frame.depth, self._clock.seconds(frame.stamp_ns))
         state, event = self._maps.update(answer.state.name)
         if state is not TrackingState.OK:
             return untracked(state, event, answer.num_tracked_points)
@@ -66,17 +62,11 @@ class OrbSlam3:
     def finish(self) -> SlamTrajectory:
         self._slam.shutdown()
         if all(map_id in self._maps.thrown_away for *_, map_id in self._online):
-            return _trajectory([])  # ORB-SLAM3 crashes when it saves a trajectory without a map
+            return SlamTrajectory.of()  # ORB-SLAM3 crashes when it saves a trajectory without a map
         with memory_file() as (file, path):
             self._slam.save_trajectory_euroc(path)
-            saved = read_saved(file.read().decode(), self._first_stamp_ns or 0)
-        return final_trajectory(_trajectory(self._online), saved, self._maps.thrown_away)
-
-    def _seconds(self, stamp_ns: int) -> float:
-        """ORB-SLAM3 keeps seconds as a double: counted from the first frame they come back exact to the nanosecond."""
-        if self._first_stamp_ns is None:
-            self._first_stamp_ns = stamp_ns
-        return (stamp_ns - self._first_stamp_ns) * 1e-9
+            saved = read_saved(file.read().decode(), self._clock.first_ns)
+        return final_trajectory(SlamTrajectory.of(self._online), saved, self._maps.thrown_away)
 
 
 def _start(vocabulary: Path, settings_text: str) -> Any:
@@ -102,14 +92,6 @@ class _OwnOutput:
         new = new[: new.rfind(b"\n") + 1]
         self._read += len(new)
         return new.decode(errors="replace")
-
-
-def _trajectory(frames: list[tuple[int, FloatArray, int]]) -> SlamTrajectory:
-    return SlamTrajectory(
-        stamps_ns=np.array([stamp_ns for stamp_ns, _, _ in frames], dtype=np.int64),
-        T_map_cam=np.array([T for _, T, _ in frames]).reshape(-1, 4, 4),
-        map_id=np.array([map_id for *_, map_id in frames], dtype=np.int64),
-    )
 
 
 def read_saved(text: str, first_stamp_ns: int) -> SlamTrajectory:

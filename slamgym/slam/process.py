@@ -5,16 +5,16 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
-from pickle import UnpicklingError
 from typing import Any, Literal
 
 from slamgym.slam.log_file import LogFile
-from slamgym.slam.memory import resident_mb
+from slamgym.slam.process_tree import own_mb, process_tree, resident_mb
 from slamgym.slam.worker import Reply
 
 _KILL_WAIT_S = 5.0
@@ -34,6 +34,7 @@ class WorkerLostError(Exception):
 
 
 _spawners: dict[int, ThreadPoolExecutor] = {}
+_spawners_lock = threading.Lock()
 
 
 def _spawner() -> ThreadPoolExecutor:
@@ -42,24 +43,25 @@ def _spawner() -> ThreadPoolExecutor:
     The kernel kills a worker when the thread that started it ends, and threads of the user's may end at any time.
     """
     pid = os.getpid()
-    if pid not in _spawners:
-        _spawners[pid] = ThreadPoolExecutor(max_workers=1, thread_name_prefix="slamgym-spawner")
-    return _spawners[pid]
+    with _spawners_lock:
+        if pid not in _spawners:
+            _spawners[pid] = ThreadPoolExecutor(max_workers=1, thread_name_prefix="slamgym-spawner")
+        return _spawners[pid]
 
 
 class WorkerProcess:
-    """A worker with its socket. Its output goes to `log`; `memory_fd` is inherited; temporary files go to `scratch`.
+    """A worker with its socket. Its output goes to `log`; `frames_fd` is inherited; temporary files go to `scratch`.
 
     It is ended when it, with the programs that it started, takes more than `memory_limit_mb` of memory.
     """
 
-    def __init__(self, memory_fd: int, log: LogFile, scratch: Path, memory_limit_mb: float) -> None:
+    def __init__(self, frames_fd: int, log: LogFile, scratch: Path, memory_limit_mb: float) -> None:
         self._log = log
         self._memory_limit_mb = memory_limit_mb
         ours, theirs = socket.socketpair()
         with theirs:
             self._connection: Connection[Any, Any] = Connection(ours.detach())
-            self._process = _spawner().submit(_spawn, theirs.fileno(), memory_fd, log, scratch).result()
+            self._process = _spawner().submit(_spawn, theirs.fileno(), frames_fd, log, scratch).result()
         self._asked = 0
         self._next_look = 0.0
 
@@ -78,26 +80,29 @@ class WorkerProcess:
         deadline = time.monotonic() + timeout_s
         while (left_s := deadline - time.monotonic()) > 0:
             answered = self._connection.poll(min(left_s, _LOOK_INTERVAL_S))
-            self._look_after_it()
+            self.look_after()
             if not answered:
                 continue
             try:
                 number, ok, value = self._connection.recv()
-            except (EOFError, OSError, UnpicklingError):
+            except (EOFError, OSError):
                 raise WorkerLostError("crashed", self._how_it_ended()) from None
+            except Exception as error:  # whatever unpickling a strange answer may raise
+                raise WorkerLostError("crashed", f"its answer cannot be read ({error!r})") from None
             # Ctrl-C may have ended the wait for an earlier answer, which comes first now.
             if number == self._asked:
                 return ok, value
         raise WorkerLostError("timeout", f"no answer within {timeout_s:g} s")
 
-    def _look_after_it(self) -> None:
-        """Now and then: raises WorkerLostError when it takes too much memory, and keeps its log small."""
+    def look_after(self) -> None:
+        """To be called often while it works: keeps its log small, raises WorkerLostError for too much memory."""
         if time.monotonic() < self._next_look:
             return
         self._next_look = time.monotonic() + _LOOK_INTERVAL_S
         self._log.free_disk()
-        used_mb = resident_mb(self.pid)
-        if used_mb > self._memory_limit_mb:
+        tree = process_tree(self.pid)
+        # Programs that it forked share most of their memory: looked at closely only when there may be too much.
+        if sum(map(resident_mb, tree)) > self._memory_limit_mb < (used_mb := sum(map(own_mb, tree))):
             limit = f"more than its limit of {self._memory_limit_mb:,.0f} MB"
             raise WorkerLostError("crashed", f"it took {used_mb:,.0f} MB of memory, {limit}")
 
@@ -105,7 +110,10 @@ class WorkerProcess:
         """Looked at without collecting the process: as long as it is not, nobody else gets its number."""
         deadline = time.monotonic() + _KILL_WAIT_S
         while time.monotonic() < deadline:
-            ended = os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+            try:
+                ended = os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+            except ChildProcessError:  # the user's program collects its children, or ignores their end
+                return "its process ended"
             if ended is not None and ended.si_code == os.CLD_EXITED:
                 return f"its process ended with exit code {ended.si_status}"
             if ended is not None:
@@ -116,21 +124,25 @@ class WorkerProcess:
     def kill(self) -> None:
         """End the process, and all that it started, at once. It keeps nothing that would need an orderly end."""
         if self._process.returncode is None:
+            started = process_tree(self.pid)
             with suppress(ProcessLookupError):
                 os.killpg(self.pid, signal.SIGKILL)
+            for pid in started:  # those that left its group
+                with suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
             with suppress(subprocess.TimeoutExpired):  # the kernel may take its time, the user should not wait for it
                 self._process.wait(_KILL_WAIT_S)
         self._connection.close()
 
 
-def _spawn(socket_fd: int, memory_fd: int, log: LogFile, scratch: Path) -> subprocess.Popen[bytes]:
+def _spawn(socket_fd: int, frames_fd: int, log: LogFile, scratch: Path) -> subprocess.Popen[bytes]:
     # A session of its own: Ctrl-C in the terminal is for the user's program, which then ends the worker and its group.
     return subprocess.Popen(
-        [sys.executable, "-P", "-u", "-m", "slamgym.slam.worker", str(socket_fd), str(memory_fd), str(os.getpid())],
+        [sys.executable, "-P", "-u", "-m", "slamgym.slam.worker", str(socket_fd), str(frames_fd), str(os.getpid())],
         stdin=subprocess.DEVNULL,
         stdout=log.fileno(),
         stderr=log.fileno(),
-        pass_fds=(socket_fd, memory_fd),
+        pass_fds=(socket_fd, frames_fd),
         env=os.environ
         | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path), "TMPDIR": str(scratch)},
         start_new_session=True,

@@ -15,7 +15,7 @@ from slamgym.errors import SlamError
 _PR_SET_PDEATHSIG = 1
 
 
-def run(words: Sequence[str], folder: Path, accepted: Collection[int]) -> None:
+def run_program(words: Sequence[str], folder: Path, accepted: Collection[int]) -> None:
     """Run a program in a folder to its end, its output going where this process's goes.
 
     Raises SlamError when it cannot be started or ends with another exit code; 128 + n is that of signal n.
@@ -51,12 +51,19 @@ def _signal_name(code: int) -> str:
         return ""
 
 
+def signal_after(parent_pid: int, number: signal.Signals) -> None:
+    """Have the kernel send this process a signal when its parent ends in whatever way (prctl(2), PR_SET_PDEATHSIG)."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, number)
+    if os.getppid() != parent_pid:  # it ended before the line above
+        signal.raise_signal(number)
+
+
 @contextmanager
 def _process_group() -> Iterator[int]:
     """A process group, for `subprocess.Popen`, all of which is killed after the block.
 
     It is also killed when this process ends within the block, even by SIGKILL: its leader, a process that only waits,
-    is told so by the kernel (prctl(2), PR_SET_PDEATHSIG).
+    is told so by the kernel.
     """
     watched = os.getpid()
     leader = os.fork()
@@ -73,7 +80,6 @@ def _process_group() -> Iterator[int]:
 def _kill_group_after(watched: int) -> None:
     os.setpgid(0, 0)
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM})
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-    if os.getppid() == watched:
-        signal.sigwait({signal.SIGTERM})
+    signal_after(watched, signal.SIGTERM)
+    signal.sigwait({signal.SIGTERM})
     os.killpg(0, signal.SIGKILL)

@@ -24,6 +24,9 @@ from slamgym.types import (
 )
 
 TAIL_LINES = 15
+LONGEST_LINE = 300
+
+_OTHER_STAMPS = "none of its final poses has the stamp of a frame: expected the stamps_ns of the frames"
 
 
 class Fed(NamedTuple):
@@ -48,10 +51,9 @@ class SlamRun:
         self._history = FrameHistory(session.config.camera)
         self._whole = WholeHistory(session.config.camera) if session.offline else None
         self._contexts: dict[int, LossContext] = {}
-        self.pace = Pace() if session.sync == "realtime" else None
-        self.frames_dropped = 0
-        self.late_s: list[float] = []
-        """How late each frame was when it was fed, seconds; empty unless in real time."""
+        self._pace = Pace() if session.sync == "realtime" else None
+        self._late_s: list[float] = []
+        self._frames_dropped = 0
 
     @property
     def last(self) -> TrackResult:
@@ -61,8 +63,8 @@ class SlamRun:
     def feed(self, frame: Frame) -> TrackResult:
         """Give one frame to the SLAM."""
         self._session.wait_ready()
-        if self.pace is not None and not self._session.outcome:
-            self.late_s.append(self.pace.wait_for(frame.stamp_ns))
+        if self._pace is not None and not self._session.outcome:
+            self._late_s.append(self._pace.wait_for(frame.stamp_ns))
         result = self._session.track(frame)
         self._fed.append(Fed(frame.stamp_ns, frame.T_world_cam, frame.has_truth, result))
         if self._whole is not None:
@@ -71,6 +73,17 @@ class SlamRun:
             self._history.add(frame, result)
             self._note_loss(result)
         return result
+
+    def feed_or_drop(self, frame: Frame, following: Frame | None) -> None:
+        """Feed a frame of a recording, unless in real time the one after it is due already.
+
+        Once the SLAM is gone nothing is dropped: what it was not there for is not tracked.
+        """
+        overtaken = self._pace is not None and following is not None and self._pace.late_s(following.stamp_ns) >= 0
+        if overtaken and not self._session.outcome:
+            self._frames_dropped += 1
+        else:
+            self.feed(frame)
 
     def finish(self) -> SlamRecord:
         """End the run and put together the record of its frames, of which there must be at least one."""
@@ -92,9 +105,13 @@ class SlamRun:
             log_tail=_last_lines(self._session.log()) if self._session.outcome else "",
             contexts=self._contexts,
             lockstep_overruns=self._session.lockstep_overruns,
-            frames_dropped=self.frames_dropped,
+            frames_dropped=self._frames_dropped,
         )
-        return record if self._whole is None else _with_states_of(record, final, self._whole)
+        if self._whole is not None:
+            return _with_states_of(record, final, self._whole)
+        if len(final.stamps_ns) and not np.isin(final.stamps_ns, record.stamps_ns).any():
+            return replace(record, outcome="crashed", failure=_OTHER_STAMPS)
+        return record
 
     def timing(self) -> dict[str, float]:
         """What the run took on this computer, NaN where nothing was timed.
@@ -102,7 +119,7 @@ class SlamRun:
         `track_ms_median`, `track_ms_p95`: time of the SLAM for a frame; `lockstep_wait_s`: for its threads, in all;
         `late_ms_median`, `late_ms_max`: how late frames were fed in real time.
         """
-        track_ms, late_ms = 1e3 * np.array(self._session.track_s), 1e3 * np.array(self.late_s)
+        track_ms, late_ms = 1e3 * np.array(self._session.track_s), 1e3 * np.array(self._late_s)
         return {
             "track_ms_median": float(np.median(track_ms)) if len(track_ms) else np.nan,
             "track_ms_p95": float(np.percentile(track_ms, 95)) if len(track_ms) else np.nan,
@@ -117,14 +134,14 @@ class SlamRun:
         if not ok and self._initialized and not self._lost:
             context = self._history.context()
             if outcome := self._session.outcome:
-                context = replace(context, cause=outcome, explanation=f"the SLAM is gone: {self._session.failure}")
+                context = replace(context, cause=outcome, explanation=self._session.failure)
             self._contexts[len(self._fed) - 1] = context
         self._initialized |= ok
         self._lost = not ok
 
 
 def _last_lines(text: str) -> str:
-    return "\n".join(text.splitlines()[-TAIL_LINES:])
+    return "\n".join(line[:LONGEST_LINE] for line in text.splitlines()[-TAIL_LINES:])
 
 
 def run_sequence(run: SlamRun, frames: Iterable[Frame]) -> SlamRecord:
@@ -133,10 +150,7 @@ def run_sequence(run: SlamRun, frames: Iterable[Frame]) -> SlamRecord:
     When the SLAM is gone, the frames that are left count as not tracked.
     """
     for frame, following in _with_next(frames):
-        if run.pace is not None and following is not None and run.late_s and run.pace.late_s(following.stamp_ns) >= 0:
-            run.frames_dropped += 1
-        else:
-            run.feed(frame)
+        run.feed_or_drop(frame, following)
     return run.finish()
 
 

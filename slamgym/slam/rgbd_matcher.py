@@ -8,15 +8,16 @@ each one is verified here on its own grounds.
 """
 
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from slamgym.camera import PinholeCamera
 from slamgym.geometry import inverse
+from slamgym.slam.backend import SlamOptions
 from slamgym.types import BoolArray, FloatArray, Frame, IntArray
 
 EDGE_GRADIENT = 10.0
@@ -27,12 +28,10 @@ MOST_EDGES = 10_000
 """More edge pixels than these are thinned out evenly: they tell no more, and each one costs time."""
 
 
-class MatchOptions(BaseModel):
+class MatchOptions(SlamOptions):
     """What is used of the images, and what an answer of OpenCV has to fulfil to be believed."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    shrink: Literal[1, 2] = Field(2, description="factor by which images are made smaller: quicker, coarser")
+    shrink: int = Field(2, ge=1, le=2, description="factor by which images are made smaller: quicker, coarser")
     max_depth: float = Field(6.0, gt=0, description="largest depth that is used, metres")
     max_translation: float = Field(0.3, gt=0, description="largest motion between two matched frames, metres")
     max_rotation_deg: float = Field(15.0, gt=0, le=180, description="largest turn between two matched frames, degrees")

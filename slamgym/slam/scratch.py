@@ -9,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 _PREFIX = "slamgym-run-"
+_REMOVAL_S = 2.0
 _FRESH_S = 60.0
 """A younger folder may belong to a run that has not locked it yet."""
 
@@ -25,9 +26,16 @@ class ScratchFolder:
     def close(self) -> None:
         """Remove it; a second call does nothing."""
         if self._lock >= 0:
-            shutil.rmtree(self.path, ignore_errors=True)
+            _remove(self.path)
             os.close(self._lock)
             self._lock = -1
+
+
+def _remove(folder: Path) -> None:
+    """A program that was just killed may still be writing there."""
+    deadline = time.monotonic() + _REMOVAL_S
+    while folder.exists() and time.monotonic() < deadline:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _remove_left_over(parent: Path) -> None:

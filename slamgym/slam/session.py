@@ -12,12 +12,13 @@ How the frames reach the SLAM is the `sync`; what each means for a result:
 """
 
 import time
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from typing import Any, Literal, Self
 
 import numpy as np
 
-from slamgym.errors import SlamgymError
+from slamgym.errors import SlamError, SlamgymError
 from slamgym.slam.backend import SlamConfig, backend_target, check_config, load_backend, untracked
 from slamgym.slam.frame_buffer import FrameBuffer
 from slamgym.slam.idle import check_lockstep_possible, wait_until_idle
@@ -74,8 +75,9 @@ class SlamSession:
         self._limits = limits
         self._log: LogFile | None = None
         self._frames: FrameBuffer | None = None
-        self._scratch: ScratchFolder | None = None
         self._worker: WorkerProcess | None = None
+        self._opened = ExitStack()
+        self._closed = False
         self._ready = False
         self._told = False
         self.outcome: Literal["", "crashed", "timeout"] = ""
@@ -95,19 +97,28 @@ class SlamSession:
 
     def start(self) -> None:
         """Start the process and let it load, without waiting for it; a second call does nothing."""
+        if self._closed:
+            raise SlamError("slam session: expected an open one, got one after its close; make a new one")
         if self._worker is not None:
             return
-        self._log = LogFile()
-        self._frames = FrameBuffer(self.config.camera)
-        self._scratch = ScratchFolder()
-        self._worker = WorkerProcess(self._frames.fd, self._log, self._scratch.path, self._limits.memory_mb)
+        try:
+            with ExitStack() as opened:
+                self._log = opened.enter_context(closing(LogFile()))
+                self._frames = opened.enter_context(closing(FrameBuffer(self.config.camera)))
+                scratch = opened.enter_context(closing(ScratchFolder()))
+                limit_mb = self._limits.memory_mb
+                self._worker = WorkerProcess(self._frames.fd, self._log, scratch.path, limit_mb)
+                opened.callback(self._worker.kill)
+                self._opened = opened.pop_all()
+        except OSError as error:
+            raise SlamError(f"slam session: cannot start a process for the SLAM: {error}; free what it lacks") from None
         self._worker.send("start", self.backend, self.config)
 
     def wait_ready(self) -> None:
         """Block until the SLAM can take frames. Raises the SlamError of a backend that says what it lacks."""
+        self.start()
         if self._ready or self.outcome:
             return
-        self.start()
         error = self._receive(self._limits.finish_s, "while it loaded")
         self._ready = True
         if isinstance(error, SlamgymError):
@@ -117,7 +128,8 @@ class SlamSession:
     def track(self, frame: Frame) -> TrackResult:
         """What the SLAM says about the next frame. Raises ConfigError when the images do not fit the camera."""
         self.wait_ready()
-        if self._frames is not None and not self.outcome:
+        assert self._frames is not None
+        if not self.outcome:
             self._frames.write(frame)
         begin = time.monotonic()
         moment = f"at frame {len(self.track_s)}"
@@ -126,7 +138,11 @@ class SlamSession:
             return self._gone()
         self.track_s.append(time.monotonic() - begin)
         if self._lockstep:
-            self._wait_for_threads()
+            begin = time.monotonic()
+            self.lockstep_overruns += not self._wait_until_idle(
+                LOCKSTEP_LIMIT_S, f"after frame {len(self.track_s) - 1}"
+            )
+            self.lockstep_wait_s += time.monotonic() - begin
         return result
 
     def finish(self) -> SlamTrajectory:
@@ -134,7 +150,7 @@ class SlamSession:
         self.wait_ready()
         if self._has_threads and self._worker is not None and not self.outcome:
             # What is still queued belongs to the run, and saving while threads work is a race.
-            wait_until_idle(self._worker.pid, self._limits.finish_s)
+            self._wait_until_idle(self._limits.finish_s, "when it was to end")
         trajectory = self._ask(self._limits.finish_s, "when it was to end", "finish")
         if isinstance(trajectory, SlamTrajectory):
             return trajectory
@@ -146,14 +162,8 @@ class SlamSession:
 
     def close(self) -> None:
         """End the process if it still runs and free everything; a second call does nothing."""
-        if self._worker is not None:
-            self._worker.kill()
-        if self._frames is not None:
-            self._frames.close()
-        if self._scratch is not None:
-            self._scratch.close()
-        if self._log is not None:
-            self._log.close()
+        self._closed = True
+        self._opened.close()
 
     def __enter__(self) -> Self:
         return self
@@ -192,8 +202,11 @@ class SlamSession:
         self._told = True
         return untracked(TrackingState.LOST, event)
 
-    def _wait_for_threads(self) -> None:
+    def _wait_until_idle(self, limit_s: float, moment: str) -> bool:
+        """Whether the SLAM's threads idled in time; a SLAM that takes too much memory meanwhile is ended."""
         assert self._worker is not None
-        begin = time.monotonic()
-        self.lockstep_overruns += not wait_until_idle(self._worker.pid, LOCKSTEP_LIMIT_S)
-        self.lockstep_wait_s += time.monotonic() - begin
+        try:
+            return wait_until_idle(self._worker.pid, limit_s, self._worker.look_after)
+        except WorkerLostError as lost:
+            self._lose(lost.outcome, f"{lost.why} {moment}")
+            return True

@@ -28,6 +28,7 @@ TRAINING_SEEDS = range(1_000_000, 1_000_012)
 """Seeds from 1,000,000 on are for training; evaluations use smaller ones."""
 
 IMAGES_PER_HOUSE = 12
+FEATURES = 1000
 CAMERA_HEIGHTS_M = (0.3, 1.4)
 _ROBOT_HEIGHT_M, _ROBOT_RADIUS_M = 0.5, 0.2
 
@@ -90,7 +91,7 @@ def _silent_opencv() -> Iterator[None]:
         log.setLogLevel(level)
 
 
-def image_descriptors(rgb: NDArray[np.uint8], features: int = 1000) -> Descriptors:
+def image_descriptors(rgb: NDArray[np.uint8], features: int = FEATURES) -> Descriptors:
     """ORB descriptors (N, 32) of an image (H, W, 3), with N at most `features`."""
     nothing = np.empty((0, 32), np.uint8)
     if min(rgb.shape[:2]) < _SMALLEST_SIDE:
@@ -100,15 +101,17 @@ def image_descriptors(rgb: NDArray[np.uint8], features: int = 1000) -> Descripto
     return nothing if descriptors is None else descriptors
 
 
-def train_on_houses(seeds: Sequence[int] = TRAINING_SEEDS, images_per_house: int = IMAGES_PER_HOUSE) -> Vocabulary:
-    """Vocabulary from rendered houses; takes about a minute for all of them."""
-    return train([image_descriptors(rgb) for seed in seeds for rgb in house_images(seed, images_per_house)])
+def house_descriptors(
+    seeds: Sequence[int] = TRAINING_SEEDS, images_per_house: int = IMAGES_PER_HOUSE, features: int = FEATURES
+) -> Iterator[Descriptors]:
+    """Descriptors (N, 32) of each image of each house, N at most `features`; about a minute for all defaults."""
+    return (image_descriptors(rgb, features) for seed in seeds for rgb in house_images(seed, images_per_house))
 
 
 def write_packed(vocabulary: Vocabulary, path: Path = PACKED) -> None:
-    """Write the text format, xz-compressed: by default over the vocabulary that comes with slamgym."""
+    """Write the text format, xz-compressed: by default over the one that comes with slamgym; raises OutputError."""
     write_atomically(path, lzma.compress(vocabulary.to_text().encode(), preset=9 | lzma.PRESET_EXTREME))
 
 
 if __name__ == "__main__":
-    write_packed(train_on_houses())
+    write_packed(train(list(house_descriptors())))

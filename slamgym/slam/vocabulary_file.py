@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slamgym.errors import SlamError
+from slamgym.files import file_sha256, recorded_hash
 from slamgym.types import BoolArray, FloatArray, IntArray
 
 Descriptors = NDArray[np.uint8]
@@ -95,6 +96,40 @@ def read_vocabulary(path: Path) -> Vocabulary:
         weight=nodes["weight"],
         scoring=SCORINGS[header.scoring],
         weighting=WEIGHTINGS[header.weighting],
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class VocabularyInfo:
+    """What is in a vocabulary file. nodes: without the root. words: the leaves."""
+
+    path: str
+    branching: int
+    depth: int
+    nodes: int
+    words: int
+    scoring: str
+    weighting: str
+    bytes: int
+    sha256: str
+    vocabulary_sha256: str
+    """The digits of the SHA-256 that results record."""
+
+
+def vocabulary_info(path: Path) -> VocabularyInfo:
+    """Read and check the whole file. Raises SlamError that names the first bad line."""
+    vocabulary = read_vocabulary(path)
+    return VocabularyInfo(
+        path=str(path),
+        branching=vocabulary.branching,
+        depth=vocabulary.depth,
+        nodes=len(vocabulary.parent),
+        words=int(vocabulary.is_leaf.sum()),
+        scoring=vocabulary.scoring,
+        weighting=vocabulary.weighting,
+        bytes=path.stat().st_size,
+        sha256=file_sha256(path),
+        vocabulary_sha256=recorded_hash(path),
     )
 
 

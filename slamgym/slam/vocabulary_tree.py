@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from slamgym.errors import ConfigError, SlamError
+from slamgym.errors import ConfigError
 from slamgym.slam.vocabulary_file import MAX_BRANCHING, MAX_DEPTH, Descriptors, Vocabulary
 from slamgym.types import IntArray
 
@@ -23,7 +23,7 @@ def check_shape(branching: int, depth: int) -> None:
     if not (2 <= branching <= MAX_BRANCHING and 1 <= depth <= MAX_DEPTH):
         raise ConfigError(
             f"vocabulary: expected a branching of 2 to {MAX_BRANCHING} and a depth of 1 to {MAX_DEPTH}, "
-            f"got {branching} and {depth}"
+            f"got {branching} and {depth}; ORB-SLAM reads no other"
         )
 
 
@@ -38,13 +38,13 @@ def train(
 
     ORB-SLAM compares images by the nodes four levels above the leaves, so depth should not be less than 6.
     on_progress: called now and then with the share of the work that is done, 1 at the end.
-    Raises ConfigError for a shape that ORB-SLAM cannot read, SlamError when there are fewer descriptors than branches.
+    Raises ConfigError for a shape that ORB-SLAM cannot read, or fewer descriptors than branches.
     """
     check_shape(branching, depth)
     packed = [np.ascontiguousarray(d).view(np.uint64) for d in images if len(d)]
     words = np.concatenate(packed) if packed else np.empty((0, 4), np.uint64)
     if len(words) < branching:
-        raise SlamError(f"vocabulary: expected at least {branching} descriptors, got {len(words)}; give more images")
+        raise ConfigError(f"vocabulary: expected at least {branching} descriptors, got {len(words)}; give more images")
     image_of = np.repeat(np.arange(len(packed)), [len(d) for d in packed])
     tree = _Tree(words, branching, depth, np.random.default_rng(seed), on_progress)
     members = tree.grow()

@@ -9,19 +9,17 @@ IEEE T-RA 1996), stay the same for a whole drive.
 """
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from slamgym.geometry import inverse
-from slamgym.slam.backend import SlamConfig, parse_options
+from slamgym.slam.backend import SlamConfig, SlamOptions
 from slamgym.slam.groundtruth import GroundTruth
 from slamgym.types import FloatArray
 
 
-class WheelOdometryOptions(BaseModel):
+class WheelOdometryOptions(SlamOptions):
     """Standard deviations of a small indoor robot's slip; all zero: the true motion."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     distance_noise: float = Field(0.02, ge=0, description="random error of the distance, metres a square root of metre")
     drift_noise: float = Field(0.02, ge=0, description="random turn while driving, radians a square root of metre")
@@ -42,7 +40,7 @@ class WheelOdometry(GroundTruth):
 
     def __init__(self, config: SlamConfig) -> None:
         super().__init__(config)
-        self._options = parse_options(WheelOdometryOptions, config.options)
+        self._options = WheelOdometryOptions.checked(config.options)
         self._slip: Slip | None = None
         self._T_world_last: FloatArray = np.eye(4)
         self._T_map_last: FloatArray = np.eye(4)

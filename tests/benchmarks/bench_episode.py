@@ -23,8 +23,7 @@ from slamgym.params import DriveParams
 from slamgym.render import Renderer
 from slamgym.rollout import run_episode
 from slamgym.slam.backend import SlamConfig
-from slamgym.slam.orb_settings import settings
-from slamgym.slam.orbslam3 import OrbSlam3Options
+from slamgym.slam.orb_settings import OrbOptions, settings
 from slamgym.slam.vocabulary import vocabulary_path
 
 SEED = 7
@@ -76,7 +75,7 @@ def bare_loop(poses: list[Any]) -> tuple[float, float]:
 def bare_slam(params: DriveParams) -> Any:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "settings.yaml"
-        path.write_text(settings(SlamConfig(params.camera, params.fps), OrbSlam3Options()))
+        path.write_text(settings(SlamConfig(params.camera, params.fps), OrbOptions()))
         return pyorbslam3.Slam(vocabulary_path(None), path, pyorbslam3.Sensor.RGBD)
 
 

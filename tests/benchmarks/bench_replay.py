@@ -22,8 +22,7 @@ from slamgym.params import SlamParams
 from slamgym.recording import record_drive
 from slamgym.replay import replay
 from slamgym.slam.backend import SlamConfig
-from slamgym.slam.orb_settings import settings
-from slamgym.slam.orbslam3 import OrbSlam3Options
+from slamgym.slam.orb_settings import OrbOptions, settings
 from slamgym.slam.vocabulary import vocabulary_path
 
 ROUNDS = 3
@@ -36,7 +35,7 @@ def main() -> None:
         env = gym.make("HomeRobot-v0", speed=0.4, path_length_m=6.0)
         record_drive(env, PathFollower(), 7, Path(folder))
         env.close()
-        sequence = read_sequence(Path(folder))
+        sequence = read_sequence(folder)
         bare_ms, ours_ms = zip(*((bare(sequence, Path(folder)), ours(sequence)) for _ in range(ROUNDS)), strict=True)
     table = Table("what", "value", title=f"replay, 640x480, {len(sequence)} frames from the disk")
     table.add_row("bare loop: read and track_rgbd", f"{min(bare_ms):.1f} ms a frame")
@@ -56,7 +55,7 @@ def bare(sequence: Sequence, folder: Path) -> float:
     """Milliseconds a frame of a loop with nothing of slamgym in it."""
     with tempfile.TemporaryDirectory() as temporary:
         path = Path(temporary) / "settings.yaml"
-        path.write_text(settings(SlamConfig(sequence.camera, sequence.fps), OrbSlam3Options()))
+        path.write_text(settings(SlamConfig(sequence.camera, sequence.fps), OrbOptions()))
         slam = pyorbslam3.Slam(vocabulary_path(None), path, pyorbslam3.Sensor.RGBD)
     lines = [line.split() for line in (folder / "associations.txt").read_text().splitlines() if line[0] != "#"]
     begins = []

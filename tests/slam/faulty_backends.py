@@ -8,19 +8,18 @@ import sys
 import tempfile
 import threading
 import time
+from dataclasses import replace
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
 
 from slamgym.errors import SlamError
-from slamgym.slam.backend import SlamConfig, untracked
+from slamgym.slam.backend import SlamConfig, SlamOptions, untracked
 from slamgym.types import Frame, SlamTrajectory, TrackingState, TrackResult
 
 
-class FaultOptions(BaseModel):
+class FaultOptions(SlamOptions):
     """fault_frame: the frame, counted from 1, that it misbehaves at."""
 
-    model_config = ConfigDict(extra="forbid")
     fault_frame: int = 3
 
 
@@ -42,7 +41,7 @@ class Healthy:
 
     def __init__(self, config: SlamConfig) -> None:
         self.stamps_ns: list[int] = []
-        self.fault_frame = FaultOptions(**config.options).fault_frame
+        self.fault_frame = FaultOptions.checked(config.options).fault_frame
 
     def track(self, frame: Frame) -> TrackResult:
         self.stamps_ns.append(frame.stamp_ns)
@@ -54,8 +53,7 @@ class Healthy:
         pass
 
     def finish(self) -> SlamTrajectory:
-        n = len(self.stamps_ns)
-        return SlamTrajectory(np.array(self.stamps_ns, np.int64), np.tile(np.eye(4), (n, 1, 1)), np.zeros(n, np.int64))
+        return SlamTrajectory.of([(stamp_ns, np.eye(4), 0) for stamp_ns in self.stamps_ns])
 
 
 class Sleeps(Healthy):
@@ -241,3 +239,47 @@ class Offline(Healthy):
     def finish(self) -> SlamTrajectory:
         self.stamps_ns = [stamp for k, stamp in enumerate(self.stamps_ns) if k not in (0, 2)]
         return super().finish()
+
+
+class AnswersNanPoses(Healthy):
+    def track(self, frame: Frame) -> TrackResult:
+        return replace(super().track(frame), T_map_cam=np.full((4, 4), np.nan))
+
+
+class FinishesWithNanPoses(Healthy):
+    def finish(self) -> SlamTrajectory:
+        final = super().finish()
+        return replace(final, T_map_cam=np.full_like(final.T_map_cam, np.nan))
+
+
+class FinishesWithOtherStamps(Healthy):
+    """In microseconds, say."""
+
+    def finish(self) -> SlamTrajectory:
+        final = super().finish()
+        return replace(final, stamps_ns=final.stamps_ns // 1000 + 1)
+
+
+class LeavesASession(Healthy):
+    """Starts a program in a session of its own, as launchers do, and hangs."""
+
+    def misbehave(self) -> None:
+        subprocess.Popen(["sleep", "1000"], start_new_session=True)
+        time.sleep(1e6)
+
+
+class GrowsBehind(Healthy):
+    """A thread of its own takes ever more memory after the fault's frame."""
+
+    has_background_threads = True
+
+    def misbehave(self) -> None:
+        threading.Thread(target=_hoard, daemon=True).start()
+
+
+def _hoard() -> None:
+    hoard: list[bytes] = []
+    while len(hoard) < 200:
+        hoard.append(b"x" * 10_000_000)
+        time.sleep(0.002)
+    _burn_cpu(1e6)

@@ -1,12 +1,15 @@
 import subprocess
 import sys
 from dataclasses import replace
+from typing import Literal
 
 import pytest
+from pydantic import BaseModel
 
 from slamgym.errors import ConfigError, SlamError
-from slamgym.slam.backend import BACKENDS, check_config, load_backend, parse_options
-from slamgym.slam.orbslam3 import OrbSlam3Options
+from slamgym.slam.backend import BACKENDS, SlamOptions, check_config, load_backend
+from slamgym.slam.groundtruth import GroundTruth
+from slamgym.slam.orb_settings import OrbOptions
 from slamgym.slam.session import SlamSession
 from slamgym.types import SlamEvent
 
@@ -22,7 +25,7 @@ def test_every_backend_offers_what_the_protocol_asks(name, config):
     assert isinstance(backend.has_background_threads, bool)
     if name not in NOT_EVERYWHERE:
         assert backend.Options() is not None  # all options have defaults
-        check_config(name, config)
+        assert check_config(name, config) is backend
 
 
 @pytest.mark.parametrize("name", BACKENDS)
@@ -51,12 +54,44 @@ def test_unknown_backend(name, message):
         ({"feature": 500}, "unknown slam option 'feature'; did you mean 'features'"),
         ({"features": "many"}, "slam option 'features': .*integer.*, got 'many'"),
         ({"scale_factor": 0.5}, "slam option 'scale_factor': .*greater than 1.*, got 0.5"),
+        ({"baseline": "inf"}, "slam option 'baseline': .*finite number, got 'inf'"),
+        ({"levels": 0, "feature": 500}, "'levels': .*, got 0; unknown slam option 'feature'"),
     ],
 )
 def test_bad_option(options, message):
     with pytest.raises(ConfigError, match=message) as caught:
-        parse_options(OrbSlam3Options, options)
+        OrbOptions.checked(options)
     assert "\n" not in str(caught.value)
+
+
+class WordsAndNumbers(SlamOptions):
+    word: Literal["fast", "exact"] = "fast"
+    number: Literal[1, 2] = 1
+    maybe: Literal["fast", "exact"] | None = None
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"word": "exat"}, "unknown word 'exat'; did you mean 'exact'"),
+        ({"number": "3"}, "slam option 'number': the value should be 1 or 2, got '3'"),
+        ({"maybe": "exat"}, "slam option 'maybe': the value should be 'fast' or 'exact', got 'exat'"),
+    ],
+)
+def test_bad_choice(options, message):
+    with pytest.raises(ConfigError, match=message):
+        WordsAndNumbers.checked(options)
+
+
+class PlainOptions(BaseModel):
+    pass
+
+
+@pytest.mark.parametrize("options", [PlainOptions, SlamOptions()])
+def test_options_of_a_users_backend_have_to_be_slam_options(options, monkeypatch):
+    monkeypatch.setattr(GroundTruth, "Options", options)
+    with pytest.raises(ConfigError, match=r"'groundtruth': expected Options derived .*SlamOptions, got .*; derive"):
+        load_backend("groundtruth")
 
 
 def test_loop_closure_of_a_slam_that_has_none(config):

@@ -91,6 +91,13 @@ def test_real_slam_on_real_frames_with_the_settings_of_orbslam2(shared_data):
     assert np.linalg.norm(inverse(truth[0])[:3] @ truth[-1][:, 3]) > 0.2  # it did move
 
 
+def test_only_what_the_command_names_is_written_and_looked_up(configured, frame):
+    script = f"test ! -e ../settings.yaml && echo 0 {POSE} > {{trajectory}}"
+    backend = Command(configured(sh(script), vocabulary="missing.txt"))
+    backend.track(frame(0))
+    assert len(backend.finish().stamps_ns) == 1
+
+
 def test_frames_are_files_that_a_program_can_read(finished, tmp_path):
     finished(f"cp -r {{sequence}} {tmp_path}; echo 0.1 {POSE} > CameraTrajectory.txt")
     copy = tmp_path / "sequence"
@@ -152,7 +159,7 @@ def test_nothing_is_run_without_frames(configured):
 
 
 def test_poses_that_are_not_finite_are_left_out(finished):
-    with pytest.warns(TrajectoryWarning, match="NaN or infinity"):
+    with pytest.warns(TrajectoryWarning, match=r"^CameraTrajectory.txt:2: .*NaN or infinity"):
         final = finished(f"(echo 0.1 {POSE}; echo 0.2 nan 0 0 0 0 0 1) > CameraTrajectory.txt")
     assert final.stamps_ns.tolist() == [100_000_000]
 
@@ -165,7 +172,7 @@ def test_poses_that_are_not_finite_are_left_out(finished):
         ("exit 139", r"exit code 139 \(SIGSEGV\)"),
         (": > Other.txt", "expected the trajectory CameraTrajectory.txt, the program wrote Other.txt"),
         (":", "the program wrote nothing"),
-        ("echo hello > CameraTrajectory.txt", "cannot be read: .*CameraTrajectory.txt:1: expected .* 8 columns"),
+        ("echo hello > CameraTrajectory.txt", "cannot be read: CameraTrajectory.txt:1: expected .* 8 columns"),
         (f"echo 1000 {POSE} > CameraTrajectory.txt", "stamps of frames, 0.100000 to 0.200000 s, got 1000.000000"),
     ],
 )
@@ -231,7 +238,7 @@ def test_missing_program(configured, program):
         ("sh {settings}", {"loop_closure": False}, "loop_closure: expected {loop_closure} in"),
         ("sh", {"trajectory": "/tmp/t.txt"}, "'trajectory': expected a path inside .*, got '/tmp/t.txt'"),
         ("sh", {"trajectory": "../t.txt"}, "'trajectory': expected a path inside"),
-        ("sh", {"accept_exit_codes": "0,x"}, r"'accept_exit_codes.1': .*integer.*, got 'x'"),
+        ("sh", {"accept_exit_codes": "0,x"}, r"'accept_exit_codes': .*integer.*, got 'x'"),
     ],
 )
 def test_what_cannot_reach_the_program_is_refused(configured, command, options, message):
@@ -257,9 +264,20 @@ def test_versions_name_the_files_that_the_command_names(configured, tmp_path):
     slam = tmp_path / "slam.py"
     slam.write_bytes(b"")
     versions = Command.versions(configured(f"sh {slam} {{vocabulary}} {{settings}}", settings=str(slam)))
-    assert versions.keys() == {"sh_sha256", "slam.py_sha256", "settings_sha256", "vocabulary_sha256"}
-    assert versions["slam.py_sha256"] == versions["settings_sha256"] == "e3b0c44298fc"  # SHA-256 of nothing
+    assert versions.keys() == {"sh_sha256", f"{slam}_sha256", "settings_sha256", "vocabulary_sha256"}
+    assert versions[f"{slam}_sha256"] == versions["settings_sha256"] == "e3b0c44298fc"  # SHA-256 of nothing
     assert Command.versions(configured(sh("x" * 5000))).keys() == {"sh_sha256"}  # too long for a file's name
+
+
+def test_versions_tell_files_of_the_same_name_apart(configured, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for folder, text in (("first", b""), ("second", b"abc")):
+        Path(folder).mkdir()
+        Path(folder, "main.py").write_bytes(text)
+    versions = Command.versions(configured("sh first/main.py ./second/main.py"))
+    del versions["sh_sha256"]
+    # SHA-256 of nothing, and of "abc" as in FIPS 180.
+    assert versions == {"first/main.py_sha256": "e3b0c44298fc", "./second/main.py_sha256": "ba7816bf8f01"}
 
 
 def trajectory(*stamps_ns: int) -> Trajectory:

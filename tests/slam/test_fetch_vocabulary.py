@@ -269,8 +269,8 @@ def test_command(server, monkeypatch, capsys):
     [
         (["--url", "{}/wrong/voc.tar.gz"], "expected its archive to have the SHA-256 ff2d0e82a69a"),
         (["--url", "{}/silent/voc.tar.gz", "--timeout-s", "0.2"], "the server was silent for 0.2 s"),
-        (["--timeout-s", "0"], "expected a timeout_s above 0, got 0"),
-        (["--timeout-s", "nan"], "expected a timeout_s above 0, got nan"),
+        (["--timeout-s", "0"], "expected --timeout-s above 0, got 0"),
+        (["--timeout-s", "nan"], "expected --timeout-s above 0, got nan"),
     ],
 )
 def test_command_fails_in_one_line(server, tmp_path, capsys, options, message):

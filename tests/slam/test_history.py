@@ -48,7 +48,7 @@ def test_figures_by_hand():
     turned = frame(0.8, 0.55, np.deg2rad(17), dots=40, depth=0.0)
     context = context_of([*calm, turned], [*(tracked(400 - 20 * k) for k in range(6)), LOST])
     assert context.speed_mps == pytest.approx(0.3 / 0.3)
-    assert context.yaw_rate_degps == pytest.approx(12 / 0.3)
+    assert context.rotation_rate_degps == pytest.approx(12 / 0.3)
     assert (context.frame_gap_s, context.usual_frame_gap_s) == pytest.approx((0.3, 0.1))
     assert (context.keypoints, context.usual_keypoints) == (40, 200)
     assert context.brightness == pytest.approx(100 + 155 * 40 / (320 * 240), abs=0.01)
@@ -94,7 +94,7 @@ def test_motion_over_frames_of_200_hz_is_taken_over_more_than_two():
 def test_without_a_truth_the_motion_is_not_known_but_the_images_are():
     frames = [replace(frame(0.1 * k), T_world_cam=np.full((4, 4), np.nan)) for k in range(3)]
     context = context_of(frames, [tracked(), tracked(), LOST])
-    assert np.isnan([context.speed_mps, context.yaw_rate_degps, context.overlap]).all()
+    assert np.isnan([context.speed_mps, context.rotation_rate_degps, context.overlap]).all()
     assert (context.keypoints, context.usual_keypoints, context.valid_depth) == (100, 100, 1.0)
 
 

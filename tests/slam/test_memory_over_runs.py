@@ -9,7 +9,7 @@ import pytest
 
 import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
-from slamgym.slam.memory import resident_mb
+from slamgym.slam.process_tree import resident_mb
 
 LOOK_AFTER = (10, 50, 100)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slamgym.camera import CAMERAS, LENSES
-from slamgym.errors import SlamError, TrajectoryWarning
+from slamgym.errors import ConfigError, SlamError, TrajectoryWarning
 from slamgym.eval.accuracy import ate
 from slamgym.eval.datasets import read_sequence
 from slamgym.slam.backend import SlamConfig, check_config
@@ -198,6 +198,12 @@ def test_condition():
     assert condition(np.diag([1.0, 1, 1, 1, 1, 4])) == pytest.approx(4)
     assert condition(np.diag([1.0, 1, 1, 1, 1, 0])) == np.inf
     assert condition(np.empty((0, 6))) == np.inf
+
+
+def test_options_may_be_text_as_on_the_command_line():
+    assert OpenCvOptions.checked({"shrink": "1", "max_depth": "4.5"}) == OpenCvOptions(shrink=1, max_depth=4.5)
+    with pytest.raises(ConfigError, match="slam option 'shrink': .*less than or equal to 2, got '3'"):
+        OpenCvOptions.checked({"shrink": "3"})
 
 
 def test_opencv_without_odometry(monkeypatch):

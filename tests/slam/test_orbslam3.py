@@ -16,8 +16,8 @@ from slamgym.camera import PinholeCamera
 from slamgym.eval.accuracy import ate
 from slamgym.eval.trajectories import read_tum
 from slamgym.slam.backend import SlamConfig
-from slamgym.slam.orb_settings import settings
-from slamgym.slam.orbslam3 import OrbSlam3Options, read_saved
+from slamgym.slam.orb_settings import Clock, OrbOptions, settings
+from slamgym.slam.orbslam3 import read_saved
 from slamgym.slam.session import SlamSession
 from slamgym.types import Frame, SlamEvent, TrackingState
 
@@ -170,12 +170,12 @@ def test_nothing_is_left_in_the_temporary_folder(real_frames, tmp_path, monkeypa
 
 @pytest.mark.parametrize(("loop_closure", "written"), [(None, 1), (True, 1), (False, 0)])
 def test_loop_closure_setting(loop_closure, written):
-    text = settings(replace(CONFIG, loop_closure=loop_closure), OrbSlam3Options())
+    text = settings(replace(CONFIG, loop_closure=loop_closure), OrbOptions())
     assert f"loopClosing: {written}\n" in text
 
 
 def test_settings_are_yaml_that_opencv_reads():
-    options = OrbSlam3Options(features=1234, scale_factor=1.5)
+    options = OrbOptions(features=1234, scale_factor=1.5)
     store = cv2.FileStorage(settings(CONFIG, options), cv2.FILE_STORAGE_READ | cv2.FILE_STORAGE_MEMORY)
     assert store.getNode("Camera1.fx").real() == 517.306408
     assert store.getNode("Camera1.k3").real() == 1.163314
@@ -183,6 +183,13 @@ def test_settings_are_yaml_that_opencv_reads():
     assert store.getNode("ORBextractor.scaleFactor").real() == 1.5
     pinhole = replace(CONFIG, camera=replace(CAMERA, distortion=()))
     assert "Camera1.k1" not in settings(pinhole, options)
+
+
+def test_times_come_back_from_seconds_to_the_nanosecond():
+    clock, stamp_ns = Clock(), 10**18 + 86_400 * 10**9 + 1  # a day later
+    assert clock.first_ns == 0
+    assert clock.seconds(10**18) == 0.0
+    assert clock.first_ns + round(clock.seconds(stamp_ns) * 1e9) == stamp_ns
 
 
 def test_read_saved():

@@ -95,9 +95,9 @@ def test_quick_turn(agent):
     env.close()
     losses = episode.summary["losses"]
     if isinstance(agent, QuickTurn):
-        assert losses[0]["start_frame"] in QuickTurn.TURNING
+        assert losses[0]["start_frame"] in range(60, 75)  # in the turn, or on the way back
         assert losses[0]["outcome"] == "relocalized"
-        assert losses[0]["context"]["yaw_rate_degps"] > 200
+        assert losses[0]["context"]["rotation_rate_degps"] > 200
         assert losses[0]["context"]["cause"] in ("fast_turn", "low_overlap")
         assert losses[0]["rotation_deg"] > 90
     else:

@@ -1,3 +1,4 @@
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -5,7 +6,7 @@ import pytest
 
 from slamgym.eval.robustness import find_losses
 from slamgym.slam.record import SlamRun, run_sequence
-from slamgym.slam.session import SlamSession
+from slamgym.slam.session import Limits, SlamSession
 from slamgym.types import TrackingState
 
 OK, LOST, NOT_YET = TrackingState.OK, TrackingState.LOST, TrackingState.NOT_INITIALIZED
@@ -74,12 +75,22 @@ def test_in_real_time_a_slow_slam_is_given_only_frames_that_are_not_overtaken(fa
 
 def test_in_real_time_frames_wait_until_they_are_due(faulty, config, frames):
     with SlamSession(faulty("Healthy"), config, "realtime") as session:
-        run = SlamRun(session)
+        session.wait_ready()
+        run, begin = SlamRun(session), time.monotonic()
         record = run_sequence(run, frames(6, 0.3))
+        took_s = time.monotonic() - begin
         timing = run.timing()
     assert (len(record.states), record.frames_dropped) == (6, 0)
     assert 0 <= timing["late_ms_median"] <= timing["late_ms_max"] < 300
-    assert run.pace.late_s(5 * 300_000_000) >= 0  # the whole 1.5 s have passed
+    assert took_s >= 1.5
+
+
+def test_frames_that_a_hanging_slam_was_not_there_for_are_lost_not_dropped(faulty, config, frames):
+    with SlamSession(faulty("Sleeps"), config, "realtime", Limits(frame_s=1.0)) as session:
+        record = run_sequence(SlamRun(session), frames(40, 1 / 30))
+    assert record.outcome == "timeout"
+    assert (len(record.states), record.frames_dropped) == (40, 0)
+    assert record.states.tolist() == [OK] * 2 + [LOST] * 38
 
 
 def test_live_in_real_time_no_frame_is_dropped(faulty, config, frames):

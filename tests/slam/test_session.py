@@ -13,8 +13,8 @@ import pytest
 
 from slamgym.errors import ConfigError, SlamError
 from slamgym.slam import session as session_module
-from slamgym.slam.memory import resident_mb
 from slamgym.slam.process import WorkerProcess
+from slamgym.slam.process_tree import own_mb, process_tree, resident_mb
 from slamgym.slam.scratch import ScratchFolder
 from slamgym.slam.session import Limits, SlamSession
 from slamgym.types import SlamEvent, TrackingState
@@ -113,16 +113,62 @@ def test_programs_that_the_slam_started_end_with_it(faulty, config, frame, child
     assert len(running) == 1
 
 
-def test_memory_counts_the_programs_that_the_slam_started():
-    alone = resident_mb(os.getpid())
-    child = subprocess.Popen([sys.executable, "-c", "x = b'x' * 100_000_000; print(flush=True); input()"], **PIPES)
+def test_memory_that_grows_while_lockstep_waits_is_stopped_too(faulty, config, frame):
+    with SlamSession(faulty("GrowsBehind"), config, "lockstep", Limits(memory_mb=300)) as session:
+        results = [session.track(frame(k)) for k in range(5)]
+    assert [r.event for r in results] == ["", "", "", SlamEvent.CRASHED, ""]
+    used_mb = re.fullmatch(r"it took (\d+) MB of memory, more than its limit of 300 MB after frame 2", session.failure)
+    assert 300 < int(used_mb[1]) < 1500
+
+
+def test_memory_of_a_process_tree():
+    program = "import os; x = b'x' * 100_000_000; os.fork(); print(flush=True); input()"
+    child = subprocess.Popen([sys.executable, "-c", program], **PIPES)
     with child:
-        child.stdout.readline()
-        with_child = resident_mb(os.getpid())
+        for _ in range(2):
+            child.stdout.readline()
+        tree = process_tree(child.pid)
+        apart, together = ([measure(pid) for pid in tree] for measure in (resident_mb, own_mb))
         child.kill()
-    assert alone > 10
-    assert 90 < with_child - alone < 200
-    assert resident_mb(child.pid) == 0
+    assert len(tree) == 2
+    assert all(mb > 100 for mb in apart)
+    assert 100 < sum(together) < 130  # what the two share counts once
+    assert process_tree(child.pid) == []
+
+
+def test_program_in_a_session_of_its_own_ends_too(faulty, config, frame):
+    with SlamSession(faulty("LeavesASession"), config, limits=Limits(frame_s=1.5)) as session:
+        for k in range(2):
+            session.track(frame(k))
+        session.track(frame(2))
+        assert session.outcome == "timeout"
+    assert not [path for path in Path("/proc").glob("[0-9]*/cmdline") if read_bytes(path) == b"sleep\x001000\x00"]
+
+
+def read_bytes(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError:
+        return b""
+
+
+def test_a_closed_session_says_so(faulty, config, frame):
+    session = SlamSession(faulty("Healthy"), config)
+    session.track(frame(0))
+    session.close()
+    for use in (lambda: session.track(frame(1)), session.finish, session.start):
+        with pytest.raises(SlamError, match="after its close"):
+            use()
+
+
+def test_a_program_that_ignores_its_children_gets_an_outcome(faulty, config, frame):
+    before = signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    try:
+        with SlamSession(faulty("Aborts"), config) as session:
+            results = [session.track(frame(k)) for k in range(4)]
+    finally:
+        signal.signal(signal.SIGCHLD, before)
+    assert [r.event for r in results] == ["", "", SlamEvent.CRASHED, ""]
 
 
 def test_temporary_files_of_a_crashed_slam_are_removed(faulty, config, frame, tmp_path, monkeypatch):

@@ -1,14 +1,14 @@
+import hashlib
 import lzma
 import os
 import subprocess
 import sys
-from dataclasses import asdict
 
 import pytest
 
-from slamgym.errors import OutputError, SlamError
+from slamgym.errors import SlamError
 from slamgym.slam import vocabulary
-from slamgym.slam.vocabulary import PACKED, check_new_file, vocabulary_hash, vocabulary_info, vocabulary_path
+from slamgym.slam.vocabulary import PACKED, vocabulary_hash, vocabulary_path
 from slamgym.slam.vocabulary_file import read_vocabulary
 
 NODE = " ".join(["1"] * 32)
@@ -23,6 +23,7 @@ def test_shipped_vocabulary_is_small_and_well_formed(tmp_path):
 
 def test_unpacked_once_into_the_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(vocabulary.tempfile, "tempdir", str(tmp_path))
     path = vocabulary_path()
     assert path.parent == tmp_path / "slamgym"
     assert path.read_bytes() == lzma.decompress(PACKED.read_bytes())
@@ -52,40 +53,10 @@ def test_users_vocabulary(tmp_path):
     good = tmp_path / "ORBvoc.txt"
     good.write_text(f"10 6  0 0\n0 1 {NODE}  0\n")  # ORB-SLAM2's own writer leaves two spaces
     assert vocabulary_path(good) == good
+    assert vocabulary_hash(good) == hashlib.sha256(good.read_bytes()).hexdigest()[:12]
     packed = tmp_path / "ORBvoc.txt.tar.gz"
     packed.write_bytes(b"\x1f\x8b\x08\x00")
     with pytest.raises(SlamError, match="in the first line"):
         vocabulary_path(packed)
     with pytest.raises(SlamError, match="expected a file"):
         vocabulary_path(tmp_path / "missing.txt")
-
-
-def test_info(tmp_path):
-    path = tmp_path / "tiny.txt"
-    path.write_text(f"2 2 1 3\n0 0 {NODE} 0\n0 1 {NODE} 0.5\n1 1 {NODE} 0.25")
-    sha256 = subprocess.run(["sha256sum", path], capture_output=True, text=True, check=True).stdout.split()[0]
-    assert asdict(vocabulary_info(path)) == {
-        "path": str(path),
-        "branching": 2,
-        "depth": 2,
-        "nodes": 3,
-        "words": 2,
-        "scoring": "L2",
-        "weighting": "binary",
-        "bytes": path.stat().st_size,
-        "sha256": sha256,
-        "vocabulary_sha256": sha256[:12],
-    }
-    assert vocabulary_hash(path) == sha256[:12]
-
-
-def test_new_file(tmp_path):
-    (tmp_path / "empty").touch()
-    (tmp_path / "full").write_text("mine")
-    check_new_file(tmp_path / "empty")
-    check_new_file(tmp_path / "deep" / "folder" / "new")
-    for taken in (tmp_path, tmp_path / "full"):
-        with pytest.raises(OutputError, match="new or empty"):
-            check_new_file(taken)
-    with pytest.raises(OutputError, match="cannot write in"):
-        check_new_file(tmp_path / "full" / "new")

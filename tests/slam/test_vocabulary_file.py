@@ -1,9 +1,12 @@
+import subprocess
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 
 from slamgym.errors import SlamError
 from slamgym.slam import vocabulary_file
-from slamgym.slam.vocabulary_file import read_header, read_vocabulary
+from slamgym.slam.vocabulary_file import read_header, read_vocabulary, vocabulary_info
 
 BYTES = " ".join(map(str, range(32)))
 GOOD = [f"0 0 {BYTES}  0", f"0 1 {BYTES}  1.5", f"1 1 {BYTES}  9.69855", f"1 1 {BYTES}  0"]
@@ -101,3 +104,20 @@ def test_a_file_without_line_ends_is_not_read_whole(tmp_path):
         file.write(b"2 2 0 0\n")
     with pytest.raises(SlamError, match="line 2: expected"):
         read_vocabulary(path)
+
+
+def test_info(tmp_path):
+    path = written(tmp_path, GOOD, head="2 2 1 3")
+    sha256 = subprocess.run(["sha256sum", path], capture_output=True, text=True, check=True).stdout.split()[0]
+    assert asdict(vocabulary_info(path)) == {
+        "path": str(path),
+        "branching": 2,
+        "depth": 2,
+        "nodes": 4,
+        "words": 3,
+        "scoring": "L2",
+        "weighting": "binary",
+        "bytes": path.stat().st_size,
+        "sha256": sha256,
+        "vocabulary_sha256": sha256[:12],
+    }

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from slamgym.errors import ConfigError, SlamError
+from slamgym.errors import ConfigError
 from slamgym.slam.vocabulary_file import read_vocabulary
 from slamgym.slam.vocabulary_tree import hamming, train
 
@@ -75,7 +75,7 @@ def test_hamming_counts_bits():
 
 
 def test_too_few_descriptors():
-    with pytest.raises(SlamError, match="expected at least 6 descriptors, got 0"):
+    with pytest.raises(ConfigError, match="expected at least 6 descriptors, got 0"):
         train([np.empty((0, 32), np.uint8)])
 
 

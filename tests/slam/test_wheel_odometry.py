@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from slamgym.errors import ConfigError
 from slamgym.geometry import inverse, mast_camera_pose
-from slamgym.slam.backend import SlamConfig, parse_options
+from slamgym.slam.backend import SlamConfig
 from slamgym.slam.session import SlamSession
 from slamgym.slam.wheel_odometry import WheelOdometry, WheelOdometryOptions
 from slamgym.types import Frame, SlamEvent, TrackingState
@@ -124,5 +124,5 @@ def test_frames_without_truth_are_not_tracked_and_the_next_one_is(config):
 
 
 def test_negative_noise_is_refused():
-    with pytest.raises(ConfigError, match=r"drift_noise.*greater than or equal to 0.*got -1"):
-        parse_options(WheelOdometryOptions, {"drift_noise": -1})
+    with pytest.raises(ConfigError, match=r"^slam option 'drift_noise': .*greater than or equal to 0.*got -1"):
+        WheelOdometryOptions.checked({"drift_noise": -1})

@@ -23,6 +23,13 @@ def test_the_camera_is_the_given_one_or_the_sequences_own_or_that_of_the_name(tu
         assert read_sequence(named).camera == LENSES[f"tum_fr{digit}"]
 
 
+def test_a_number_without_a_point_that_yaml_takes_for_a_word(tum_folder):
+    text = "{width: 8, height: 6, fx: 75e-1, fy: 7.25, cx: 3.5, cy: 2.5, distortion: [0.1, -2e-1, 0, -1e-5], fps: 1e1}"
+    sequence = read_sequence(tum_folder(camera_yaml=text))
+    assert sequence.camera == PinholeCamera(8, 6, 7.5, 7.25, 3.5, 2.5, (0.1, -0.2, 0.0, -1e-5))
+    assert sequence.fps == 10
+
+
 def test_the_name_of_a_folder_that_is_given_as_a_dot_counts(tum_folder, monkeypatch):
     monkeypatch.chdir(tum_folder(name="tum_fr3_office", camera_yaml=""))
     sequence = read_sequence(".")

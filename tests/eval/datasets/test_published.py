@@ -41,7 +41,3 @@ def test_the_figure_of_a_sequence_is_found_by_its_folder(name, sequence, ate_rms
 )
 def test_other_sequences_have_none(name):
     assert published(name) is None
-
-
-def test_a_system_that_nothing_is_known_of_has_none():
-    assert published("fr1_xyz", system="ORB-SLAM9") is None

@@ -54,6 +54,7 @@ def test_frames_are_pairs_with_colour_in_rgb_and_depth_in_metres(tum_folder):
         assert frame.depth.dtype == np.float32
         assert (frame.depth == k).all()
     assert [frame.stamp_ns for frame in sequence.frames(stride=1)] == [1_000_000_000, 1_200_000_000]
+    assert list(sequence.rows(stride=1)) == [0, 2]
 
 
 def test_colour_and_depth_are_paired_by_time_the_closest_first(tum_folder):

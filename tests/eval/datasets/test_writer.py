@@ -98,39 +98,60 @@ def test_only_poses_that_are_known_become_the_truth(tmp_path, camera, make_frame
     assert read_sequence(tmp_path / "none").truth is None
 
 
-def test_a_recording_that_an_exception_ends_has_no_lists(tmp_path, camera, make_frames):
-    with pytest.raises(KeyboardInterrupt), SequenceWriter(tmp_path, camera, 30.0) as writer:  # noqa: PT012
+@pytest.mark.parametrize("error", [KeyboardInterrupt, FileNotFoundError("not ours")], ids=["Ctrl-C", "OSError"])
+@pytest.mark.parametrize("exists", [False, True])
+def test_a_recording_that_an_exception_ends_leaves_nothing(tmp_path, camera, make_frames, error, exists):
+    folder = tmp_path / "new"
+    if exists:
+        folder.mkdir()
+    before = list(tmp_path.iterdir())
+    kind = error if isinstance(error, type) else type(error)
+    with pytest.raises(kind), SequenceWriter(folder, camera, 30.0) as writer:  # noqa: PT012
         for frame in make_frames(20):
             writer.add(frame)
-        raise KeyboardInterrupt
+        raise error
     assert not writing_threads()
-    assert not sequence_files(tmp_path)
+    assert list(tmp_path.rglob("*")) == before
     with pytest.raises(OutputError, match="still recorded"):
         writer.add(make_frames(1)[0])
+    assert len(read_sequence(record(folder, camera, make_frames(2)))) == 2
+
+
+def test_a_recording_is_there_whole_or_not_at_all(tmp_path, camera, make_frames):
+    with SequenceWriter(tmp_path / "new", camera, 30.0) as writer:
+        for frame in make_frames(20):
+            writer.add(frame)
+            assert not (tmp_path / "new").exists()
+    assert len(read_sequence(tmp_path / "new")) == 20
+    assert list(tmp_path.iterdir()) == [tmp_path / "new"]
 
 
 def test_an_image_that_cannot_be_written_is_told_by_the_next_calls(tmp_path, camera, make_frames):
-    writer = SequenceWriter(tmp_path / "new", camera, 30.0)
-    shutil.rmtree(tmp_path / "new" / "rgb")
-    with pytest.raises(OutputError, match=r"writing the sequence .*new failed \(No such file"):  # noqa: PT012
+    def without(kind):
+        """A writer whose folder of that kind is gone, as on a disk that is taken away."""
+        writer = SequenceWriter(tmp_path / "new", camera, 30.0)
+        shutil.rmtree(next(tmp_path.glob(f".new-*/new/{kind}")))
+        return writer
+
+    writer = without("rgb")
+    with pytest.raises(OutputError, match=r"cannot write .*new: No such file"):  # noqa: PT012
         for frame in make_frames(20):
             writer.add(frame)
-    writer.close()
     assert not writing_threads()
-    assert not sequence_files(tmp_path / "new")
-    writer = SequenceWriter(tmp_path / "other", camera, 30.0)
-    shutil.rmtree(tmp_path / "other" / "depth")
+    writer.close()
+    writer = without("depth")
     writer.add(make_frames(1)[0])
-    with pytest.raises(OutputError, match="other failed"):
+    with pytest.raises(OutputError, match=r"cannot write .*new: No such file"):
         writer.close()
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(("size", "count", "limit"), [(40, 3, 2_000), (2, 60, 2_000)], ids=["images", "lists"])
-def test_a_full_disk_leaves_no_lists(tmp_path, size, count, limit):
+def test_a_full_disk_leaves_nothing(tmp_path, size, count, limit):
     arguments = [sys.executable, "-c", FULL_DISK, str(tmp_path / "new"), str(size), str(count), str(limit)]
     result = subprocess.run(arguments, capture_output=True, text=True, timeout=60, check=True)
-    assert "failed (File too large); make room or name another folder" in result.stdout
-    assert [path.name for path in (tmp_path / "new").iterdir() if path.name not in ("rgb", "depth")] == []
+    assert result.stdout == f"cannot write {tmp_path / 'new'}: File too large; make room or name another\n"
+    assert not list(tmp_path.iterdir())
 
 
 def test_frames_that_do_not_fit_are_refused(tmp_path, camera, make_frames):
@@ -150,6 +171,6 @@ def test_nothing_is_written_over(tmp_path, camera):
         SequenceWriter(tmp_path, camera, 30.0)
     with pytest.raises(OutputError, match="expected a new or empty folder"):
         SequenceWriter(tmp_path / "mine.txt", camera, 30.0)
-    with pytest.raises(OutputError, match=r"mine\.txt/new failed"):
+    with pytest.raises(OutputError, match=r"cannot write in .*mine\.txt;"):
         SequenceWriter(tmp_path / "mine.txt" / "new", camera, 30.0)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]

@@ -9,7 +9,7 @@ from slamgym.types import LossContext
 # A frame of a calm drive at 30 Hz.
 CALM = LossContext(
     speed_mps=0.5,
-    yaw_rate_degps=20.0,
+    rotation_rate_degps=20.0,
     frame_gap_s=0.033,
     usual_frame_gap_s=0.033,
     overlap=0.97,
@@ -38,19 +38,19 @@ CHANGES = {
         "the image is dark (brightness 3 of 255); few keypoints (0, usually 600)",
     ),
     "frame_gap": (
-        {"frame_gap_s": 1.0, "overlap": 0.85, "speed_mps": 0.05, "yaw_rate_degps": 5.0},
+        {"frame_gap_s": 1.0, "overlap": 0.85, "speed_mps": 0.05, "rotation_rate_degps": 5.0},
         "1.00 s since the last frame, usually 0.03 s",
     ),
     "no_depth": ({"valid_depth": 0.02}, "hardly any depth (2% of the pixels)"),
     "blur": ({"sharpness": 0.008}, "the image is blurred (sharpness 4% of the usual)"),
     "few_keypoints": ({"keypoints": 119}, "few keypoints (119, usually 600)"),  # below a fifth
     "fast_turn": (
-        {"yaw_rate_degps": 180.0, "frame_gap_s": 0.1, "usual_frame_gap_s": 0.1, "speed_mps": 0.0},
-        "the camera turned by 18 deg from frame to frame (180 deg/s)",
+        {"rotation_rate_degps": 180.0, "frame_gap_s": 0.1, "usual_frame_gap_s": 0.1, "speed_mps": 0.0},
+        "the camera turned by 18 deg in one frame (180 deg/s)",
     ),
     "fast_motion": (
         {"speed_mps": 6.0, "frame_gap_s": 0.05},
-        "the camera moved by 0.30 m from frame to frame, seeing what is 1.80 m away",
+        "the camera moved by 0.30 m in one frame, seeing what is 1.80 m away",
     ),
     "low_overlap": ({"overlap": 0.53}, "only 53% of the view before was still in view"),
     "fading": (
@@ -86,9 +86,10 @@ def test_every_cause_can_be_told():
     ("changes", "cause"),
     [
         ({"brightness": 10, "keypoints": 500}, "unknown"),  # dark, but full of corners all the same
-        ({"frame_gap_s": 1.0, "overlap": 0.95, "speed_mps": 0.05, "yaw_rate_degps": 5.0}, "unknown"),  # it stood still
-        ({"frame_gap_s": 1.0, "overlap": np.nan, "speed_mps": np.nan, "yaw_rate_degps": np.nan}, "frame_gap"),
-        ({"yaw_rate_degps": 80.0, "frame_gap_s": 0.3, "usual_frame_gap_s": 0.3}, "fast_turn"),  # 24 deg
+        # It stood still.
+        ({"frame_gap_s": 1.0, "overlap": 0.95, "speed_mps": 0.05, "rotation_rate_degps": 5.0}, "unknown"),
+        ({"frame_gap_s": 1.0, "overlap": np.nan, "speed_mps": np.nan, "rotation_rate_degps": np.nan}, "frame_gap"),
+        ({"rotation_rate_degps": 80.0, "frame_gap_s": 0.3, "usual_frame_gap_s": 0.3}, "fast_turn"),  # 24 deg
         ({"keypoints": 130, "usual_keypoints": np.nan}, "unknown"),
         ({"keypoints": 90, "usual_keypoints": np.nan}, "few_keypoints"),
         ({"keypoints": 90, "usual_keypoints": 95}, "few_keypoints"),
@@ -101,12 +102,12 @@ def test_what_tips_the_scales(changes, cause):
 
 
 def test_a_cause_is_the_most_telling_and_three_are_said():
-    changes = {"sharpness": 0.01, "keypoints": 20, "yaw_rate_degps": 400.0, "overlap": 0.3, "tracked_points": 40}
+    changes = {"sharpness": 0.01, "keypoints": 20, "rotation_rate_degps": 400.0, "overlap": 0.3, "tracked_points": 40}
     explained = explain(replace(CALM, **changes))
     assert explained.cause == "blur"
     assert explained.explanation == (
         "the image is blurred (sharpness 5% of the usual); few keypoints (20, usually 600); "
-        "the camera turned by 13 deg from frame to frame (400 deg/s)"
+        "the camera turned by 13 deg in one frame (400 deg/s)"
     )
 
 
