@@ -10,7 +10,7 @@ from slamgym.checked_params import Params
 from slamgym.errors import ConfigError, unknown_word
 from slamgym.eval.robustness import MapPolicy
 from slamgym.render import Lighting
-from slamgym.slam.backend import SlamConfig, load_backend, parse_options
+from slamgym.slam.backend import SlamConfig, load_backend
 from slamgym.slam.session import Limits, SlamSession, Sync
 
 RADIUS_OF_TURN = 0.25
@@ -100,7 +100,7 @@ class SlamParams(Params):
     def recorded(self, config: SlamConfig) -> dict[str, Any]:
         """All parameters, the backend's options resolved, and what else the results depend on in `slam_versions`."""
         backend = load_backend(self.slam)
-        options = parse_options(backend.Options, config.options).model_dump()
+        options = backend.Options.checked(config.options).model_dump()
         return {**self.model_dump(), "slam_options": options, "slam_versions": backend.versions(config)}
 
 

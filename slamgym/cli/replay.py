@@ -53,7 +53,8 @@ class ReplayCommand:
         rows: list[dict[str, Any]] = []
         try:
             for sequence, run in product(sequences, range(1, self.repeats + 1)):
-                done = _replayed(sequence, params, f"{sequence.name}, run {run} of {self.repeats}")
+                with told_warnings(Path(sequence.name)):
+                    done = _replayed(sequence, params, f"{sequence.name}, run {run} of {self.repeats}")
                 write_run(done, self.out / sequence.name / str(run))
                 rows.append(_row(done, run))
                 write_atomically(self.out / RUNS_FILE, _runs_csv(rows))

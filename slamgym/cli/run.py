@@ -6,7 +6,7 @@ import tyro
 
 from slamgym.cli.drive import DriveCommand
 from slamgym.cli.options import option_group
-from slamgym.cli.terminal import notes, printing, results, say, show_table
+from slamgym.cli.terminal import notes, printing, results, say, show_table, told_warnings
 from slamgym.params import SlamInLoopParams
 from slamgym.report_table import episode_table, remarks
 from slamgym.rollout import EpisodeInterrupted, run_episode
@@ -26,11 +26,12 @@ class Run(DriveCommand):
 
     def __call__(self) -> None:
         try:
-            episode = self.driven(
-                "HomeRobotSLAM-v0",
-                vars(self.slam),
-                lambda env, agent, on_step: run_episode(env, agent, self.seed, on_step),
-            )
+            with told_warnings():
+                episode = self.driven(
+                    "HomeRobotSLAM-v0",
+                    vars(self.slam),
+                    lambda env, agent, on_step: run_episode(env, agent, self.seed, on_step),
+                )
         except EpisodeInterrupted as interrupted:
             say(notes, f"interrupted; what was driven is in {write_run(interrupted.episode, self.out)}")
             raise

@@ -107,8 +107,9 @@ def load_backend(name: str) -> type[Backend]:
     module, _, attribute = backend_target(name).partition(":")
     try:
         backend = getattr(import_module(module), attribute)
-    except (ImportError, AttributeError, TypeError, ValueError) as error:
-        raise ConfigError(f"slam backend {name!r}: expected an importable 'module:class'; {error}") from error
+    except Exception as error:  # the module is the user's, and may fail in any way
+        why = f"{type(error).__name__}: {error}".splitlines()[0]
+        raise ConfigError(f"slam backend {name!r}: expected an importable 'module:class', got {why}") from error
     if missing := [part for part in PARTS if not hasattr(backend, part)]:
         raise ConfigError(f"slam backend {name!r}: expected a class as slamgym.slam.backend.Backend, without {missing}")
     if not (isinstance(backend.Options, type) and issubclass(backend.Options, SlamOptions)):
@@ -117,11 +118,6 @@ def load_backend(name: str) -> type[Backend]:
             f"{backend.Options!r}; derive it from that, which is a pydantic model"
         )
     return cast(type[Backend], backend)
-
-
-def parse_options(model: type[SlamOptions], options: Mapping[str, Any]) -> SlamOptions:
-    """Options as the backend's model; raises ConfigError."""
-    return model.checked(options)
 
 
 def check_config(name: str, config: SlamConfig) -> type[Backend]:

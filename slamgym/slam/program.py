@@ -13,6 +13,7 @@ from pathlib import Path
 from slamgym.errors import SlamError
 
 _PR_SET_PDEATHSIG = 1
+_PR_SET_CHILD_SUBREAPER = 36
 
 
 def run_program(words: Sequence[str], folder: Path, accepted: Collection[int]) -> None:
@@ -49,6 +50,11 @@ def _signal_name(code: int) -> str:
         return f" ({signal.Signals(code - 128).name})"
     except ValueError:
         return ""
+
+
+def adopt_orphans() -> None:
+    """Become the parent of what descendants of this process leave behind: so nothing gets out of sight (prctl(2))."""
+    ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1)
 
 
 def signal_after(parent_pid: int, number: signal.Signals) -> None:

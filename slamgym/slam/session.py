@@ -12,14 +12,13 @@ How the frames reach the SLAM is the `sync`; what each means for a result:
 """
 
 import time
+import warnings
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
-from typing import Any, Literal, Self
+from typing import Any, Literal, Self, cast
 
-import numpy as np
-
-from slamgym.errors import SlamError, SlamgymError
-from slamgym.slam.backend import SlamConfig, backend_target, check_config, load_backend, untracked
+from slamgym.errors import SlamError, SlamgymError, TrajectoryWarning
+from slamgym.slam.backend import SlamConfig, backend_target, check_config, untracked
 from slamgym.slam.frame_buffer import FrameBuffer
 from slamgym.slam.idle import check_lockstep_possible, wait_until_idle
 from slamgym.slam.log_file import LogFile
@@ -62,14 +61,14 @@ class SlamSession:
         sync: Sync = "lockstep",
         limits: Limits = Limits(),
     ) -> None:
-        check_config(backend, config)
-        self._has_threads = load_backend(backend).has_background_threads
+        kind = check_config(backend, config)
+        self._has_threads = kind.has_background_threads
         self._lockstep = sync == "lockstep" and self._has_threads
         if self._lockstep:
             check_lockstep_possible()
         self.backend = backend_target(backend)
         """As "module:class": the worker does not know names that a user registered."""
-        self.offline = load_backend(backend).offline
+        self.offline = kind.offline
         self.sync: Sync = sync
         self.config = config
         self._limits = limits
@@ -146,15 +145,21 @@ class SlamSession:
         return result
 
     def finish(self) -> SlamTrajectory:
-        """End the run; the poses that the SLAM stands by, none when it is gone."""
+        """End the run; the poses that the SLAM stands by, none when it is gone.
+
+        Warns (TrajectoryWarning) of what had to be repaired in them.
+        """
         self.wait_ready()
         if self._has_threads and self._worker is not None and not self.outcome:
             # What is still queued belongs to the run, and saving while threads work is a race.
             self._wait_until_idle(self._limits.finish_s, "when it was to end")
-        trajectory = self._ask(self._limits.finish_s, "when it was to end", "finish")
-        if isinstance(trajectory, SlamTrajectory):
-            return trajectory
-        return SlamTrajectory(np.empty(0, np.int64), np.empty((0, 4, 4)), np.empty(0, np.int64))
+        answer = self._ask(self._limits.finish_s, "when it was to end", "finish")
+        if answer is not None:
+            trajectory, warned = answer
+            for message in warned:
+                warnings.warn(message, TrajectoryWarning, stacklevel=2)
+            return cast(SlamTrajectory, trajectory)
+        return SlamTrajectory.of()
 
     def log(self) -> str:
         """What the SLAM printed, the last MiB of it; empty before `start` and after `close`."""
@@ -189,7 +194,7 @@ class SlamSession:
             return None
         if not ok:
             text = str(value).strip() or type(value).__name__
-            self._lose("crashed", f"{text.splitlines()[-1]} ({moment})")
+            self._lose("crashed", f"{text.splitlines()[0]} ({moment})")
         return value
 
     def _lose(self, outcome: Outcome, failure: str) -> None:

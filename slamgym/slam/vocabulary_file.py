@@ -5,6 +5,7 @@ weight. The first node has the id 1, the root is 0 and has no line. Numbers are 
 ORB-SLAM2's own writer leaves two of them here and there.
 """
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import count, islice
@@ -28,6 +29,7 @@ WEIGHTINGS = ("tf-idf", "tf", "idf", "binary")
 MAX_BRANCHING, MAX_DEPTH = 20, 10
 """What ORB-SLAM's reader accepts."""
 
+_NODE_COLUMNS = 2 + 32 + 1
 _LONGEST_LINE = 400  # bytes; a node needs about 140, and a file without line ends must not fill the memory
 _BLOCK_LINES = 20_000
 _NODE = np.dtype([("parent", np.int64), ("is_leaf", np.int64), ("descriptor", np.uint8, (32,)), ("weight", np.float64)])
@@ -68,9 +70,17 @@ class Vocabulary:
 
 
 def read_header(path: Path) -> Header:
-    """Raises SlamError unless the file begins as DBoW2's text format does; a quick check, the tree is not looked at."""
+    """Raises SlamError unless the file begins and ends as DBoW2's text format does; the tree is not looked at."""
     with _opened(path) as file:
-        return _parse_header(file.readline(_LONGEST_LINE), path)
+        header = _parse_header(file.readline(_LONGEST_LINE), path)
+        file.seek(-min(_LONGEST_LINE, path.stat().st_size), os.SEEK_END)
+        last = (file.read().splitlines() or [b""])[-1]
+    if len(last.split()) != _NODE_COLUMNS:
+        raise SlamError(
+            f"vocabulary: {path}: expected {_NODE_COLUMNS} columns in the last line, got {len(last.split())}: "
+            "was the file cut off? Get it again"
+        )
+    return header
 
 
 def read_vocabulary(path: Path) -> Vocabulary:

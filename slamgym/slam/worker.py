@@ -16,11 +16,11 @@ from slamgym.errors import SlamgymError, TrajectoryWarning
 from slamgym.slam.answers import checked_result, checked_trajectory
 from slamgym.slam.backend import Backend, SlamConfig, load_backend
 from slamgym.slam.frame_buffer import FrameBuffer
-from slamgym.slam.program import signal_after
+from slamgym.slam.program import adopt_orphans, signal_after
 from slamgym.types import FloatArray, Frame, SlamTrajectory, TrackResult
 
 Reply = tuple[bool, Any]
-"""(True, value), or (False, a SlamgymError that the user can act on), or (False, text of a traceback)."""
+"""(True, value), or (False, a SlamgymError that the user can act on), or (False, another error in one line)."""
 
 
 class Server:
@@ -34,9 +34,13 @@ class Server:
     def answer(self, request: str, *arguments: Any) -> Reply:
         try:
             return True, getattr(self, request)(*arguments)
+        except SlamgymError as error:
+            sys.stderr.write(f"{error}\n")
+            # A class of the backend's own may not be one that can be sent.
+            return False, error if type(error).__module__ == SlamgymError.__module__ else _in_one_line(error)
         except BaseException as error:
             traceback.print_exc()
-            return False, error if isinstance(error, SlamgymError) else traceback.format_exc()
+            return False, _in_one_line(error)
 
     def start(self, name: str, config: SlamConfig) -> None:
         self._frames = FrameBuffer(config.camera, self._frames_fd)
@@ -58,6 +62,11 @@ class Server:
         return trajectory, [str(one.message) for one in caught if issubclass(one.category, TrajectoryWarning)]
 
 
+def _in_one_line(error: BaseException) -> str:
+    first = next(iter(str(error).strip().splitlines()), "")
+    return f"{type(error).__name__}: {first}"
+
+
 def serve(connection: "Connection[Any, Any]", frames_fd: int) -> None:
     server = Server(frames_fd)
     while True:
@@ -69,6 +78,7 @@ def main() -> None:
     socket_fd, frames_fd, parent_pid = map(int, sys.argv[1:])
     signal_after(parent_pid, signal.SIGKILL)  # even when it hangs in C++
     os.set_inheritable(socket_fd, False)
+    adopt_orphans()
     try:
         serve(Connection(socket_fd), frames_fd)
     except (EOFError, ConnectionError):

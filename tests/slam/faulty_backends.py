@@ -261,10 +261,11 @@ class FinishesWithOtherStamps(Healthy):
 
 
 class LeavesASession(Healthy):
-    """Starts a program in a session of its own, as launchers do, and hangs."""
+    """Starts a program in a session of its own through one that ends at once, as launchers do, and hangs."""
 
     def misbehave(self) -> None:
-        subprocess.Popen(["sleep", "1000"], start_new_session=True)
+        program = "import subprocess; subprocess.Popen(['sleep', '1000'], start_new_session=True)"
+        subprocess.run([sys.executable, "-c", program], check=True)
         time.sleep(1e6)
 
 

@@ -196,6 +196,17 @@ def test_file_that_cannot_be_started(config, frame, tmp_path):
         backend.finish()
 
 
+def test_repairs_are_told_to_the_user(configured, frame):
+    script = f"(echo 0 {POSE}; echo 0.01 nan 0 0 0 0 0 1; echo 9 {POSE}) > CameraTrajectory.txt"
+    with SlamSession("command", configured(sh(script))) as session:
+        session.track(frame(0))
+        with pytest.warns(TrajectoryWarning) as told:
+            assert len(session.finish().stamps_ns) == 1
+    first, second = (str(one.message) for one in told)
+    assert first.startswith("CameraTrajectory.txt:2: expected")
+    assert second == "1 of 2 poses belong to no frame: left out"
+
+
 def test_failure_of_the_program_is_a_crash_of_the_run(configured, frame):
     with SlamSession("command", configured(sh("echo some words; exit 3"))) as session:
         session.track(frame(0))

@@ -202,7 +202,7 @@ def test_condition():
 
 def test_options_may_be_text_as_on_the_command_line():
     assert OpenCvOptions.checked({"shrink": "1", "max_depth": "4.5"}) == OpenCvOptions(shrink=1, max_depth=4.5)
-    with pytest.raises(ConfigError, match="slam option 'shrink': .*less than or equal to 2, got '3'"):
+    with pytest.raises(ConfigError, match=r"slam option 'shrink': .*less than or equal to 2, got '3'"):
         OpenCvOptions.checked({"shrink": "3"})
 
 

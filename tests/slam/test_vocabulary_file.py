@@ -121,3 +121,11 @@ def test_info(tmp_path):
         "sha256": sha256,
         "vocabulary_sha256": sha256[:12],
     }
+
+
+def test_a_file_that_was_cut_off_is_not_even_given_to_a_slam(tmp_path):
+    path = written(tmp_path, GOOD)
+    assert read_header(path).branching == 2
+    path.write_bytes(path.read_bytes()[:-20])
+    with pytest.raises(SlamError, match="expected 35 columns in the last line, got .*cut off"):
+        read_header(path)
