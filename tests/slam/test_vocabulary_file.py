@@ -127,5 +127,5 @@ def test_a_file_that_was_cut_off_is_not_even_given_to_a_slam(tmp_path):
     path = written(tmp_path, GOOD)
     assert read_header(path).branching == 2
     path.write_bytes(path.read_bytes()[:-20])
-    with pytest.raises(SlamError, match="expected 35 columns in the last line, got .*cut off"):
+    with pytest.raises(SlamError, match=r"expected 35 columns in the last line, got .*cut off"):
         read_header(path)
