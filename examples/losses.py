@@ -71,18 +71,16 @@ def watched(sequence: Sequence, params: SlamParams) -> list[LossContext]:
     return contexts
 
 
-def told(sequence: Sequence, params: SlamParams, frames: Iterator[Frame]) -> dict[str, object]:
+def told(sequence: Sequence, params: SlamParams, frames: Iterator[Frame]) -> dict[str, str]:
     """Whether a disturbed drive was lost, and what was told of the first loss."""
     with params.session(params.config(sequence.camera, sequence.fps)) as session:
-        losses = summarize_slam(run_sequence(SlamRun(session), frames))["losses"]
-    if not losses:
-        return {"lost": "no", "cause": "", "explanation": ""}
-    context = losses[0]["context"]
-    return {
-        "lost": f"frame {losses[0]['start_frame']}",
-        "cause": context["cause"],
-        "explanation": context["explanation"],
-    }
+        summary = summarize_slam(run_sequence(SlamRun(session), frames))
+    row = {"lost": "no", "status": summary["status"], "cause": "", "explanation": ""}
+    if losses := summary["losses"]:
+        context = losses[0]["context"]
+        told_of_it = {"cause": context["cause"], "explanation": context["explanation"]}
+        row |= {"lost": f"frame {losses[0]['start_frame']}", **told_of_it}
+    return row
 
 
 def print_calm(contexts: list[LossContext]) -> None:

@@ -8,8 +8,9 @@ EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 SHORT = ["--path-length-m", "1.5"]
 ARGUMENTS = {
     "quickstart.py": [],
-    "repeatability.py": [*SHORT, "--repeats", "2", "--busy-loops", "1", "--camera", "small", "--syncs", "free"],
+    "repeatability.py": [*SHORT, "--repeats", "2", "--busy-loops", "1", "--camera", "small", "--syncs", "realtime"],
     "backends.py": [*SHORT, "--seeds", "1", "--speed", "1.0", "--camera", "small"],
+    "losses.py": [*SHORT, "--scenes", "procedural:0", "--seeds", "7", "--camera", "small", "--slam", "groundtruth"],
     "views.py": [*SHORT, "--out", "OUT.png"],
     "speed_sweep.py": [*SHORT, "--speeds", "0.5", "1.0", "--out", "OUT"],
 }

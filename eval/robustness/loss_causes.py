@@ -1,7 +1,7 @@
 """Why was it lost? Rules that name what stood out in the first lost image and in the step to it.
 
 The thresholds lie between what ORB-SLAM3 was seen to get lost with, in real and in rendered frames, and what frames
-look like that it tracks in a calm drive; `docs/metrics.md` has both.
+look like that it tracks in a calm drive; `examples/losses.py` shows both.
 """
 
 from collections.abc import Callable
