@@ -14,6 +14,8 @@ EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130
 EXIT_CLOSED_PIPE = 141
 
+PAIRS_FLAG = "--slam-options"
+
 COMMANDS = {
     "run": "slamgym.cli.run:Run",
     "record": "slamgym.cli.record:Record",
@@ -41,11 +43,10 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _refuse_repeated(arguments: list[str]) -> None:
-    """The parser would take the last one and forget the others."""
-    flags = [word.partition("=")[0].replace("_", "-") for word in arguments if word.startswith("--")]
-    for flag in flags:
-        if flags.count(flag) > 1:
-            raise ConfigError(f"{flag}: expected it once, got it {flags.count(flag)} times; give all values after one")
+    """Of two lists of options the parser would take the last one and forget the other."""
+    times = sum(word.partition("=")[0].replace("_", "-") == PAIRS_FLAG for word in arguments)
+    if times > 1:
+        raise ConfigError(f"{PAIRS_FLAG}: expected it once, got it {times} times; give all pairs after one")
 
 
 def _parsed(arguments: list[str]) -> Callable[[], None]:
