@@ -227,6 +227,8 @@ def test_nowhere_to_write(server, tmp_path, monkeypatch):
 
 def test_interrupted_download_leaves_nothing(server, tmp_path):
     program = (
+        # A program that is started in the background ignores Ctrl-C, and so do those that it starts.
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "from slamgym.slam.fetch_vocabulary import *\n"
         f"fetch_vocabulary(source=Source('{server[0]}/stalled/voc.tar.gz', '', ''),"
         " on_bytes=lambda done, total: print(done, flush=True))"
