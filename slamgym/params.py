@@ -16,6 +16,8 @@ from slamgym.slam.session import Limits, SlamSession, Sync
 RADIUS_OF_TURN = 0.25
 """metres; `turn_rate=None` turns at speed / RADIUS_OF_TURN, so that another speed retimes the same path."""
 
+_LIMITS = Limits()
+
 LONGEST_STEP_M = 0.4
 """More than that between two frames, and progress along a path that crosses itself cannot be told."""
 
@@ -76,11 +78,13 @@ class SlamParams(Params):
     map_policy: MapPolicy = Field(
         "largest", description="map that is evaluated: the largest, the first, or each by itself"
     )
-    slam_timeout_s: float = Field(20.0, gt=0, le=3600, description="longest time that the SLAM may take for a frame, s")
-    slam_finish_timeout_s: float = Field(
-        120.0, gt=0, le=86_400, description="longest time that it may take to load, and to end, s"
+    slam_timeout_s: float = Field(
+        _LIMITS.frame_s, gt=0, le=3600, description="longest time that the SLAM may take for a frame, s"
     )
-    slam_memory_mb: float = Field(8000.0, ge=100, description="memory that it may take, MB")
+    slam_finish_timeout_s: float = Field(
+        _LIMITS.finish_s, gt=0, le=86_400, description="longest time that it may take to load, and to end, s"
+    )
+    slam_memory_mb: float = Field(_LIMITS.memory_mb, ge=100, description="memory that it may take, MB")
 
     @field_validator("slam")
     @classmethod

@@ -2,7 +2,6 @@
 
 import os
 import sys
-from pathlib import Path
 
 import gymnasium as gym
 import pytest
@@ -28,16 +27,10 @@ def test_100_episodes_in_one_process(capsys):
             done = terminated or truncated
         assert info["episode_slam"]["status"] in ("ok", "lost", "init_failed")
         if number in LOOK_AFTER:
-            # The workers of this run and of the next one are children of this process.
-            parent_mb[number] = alone_mb()
+            parent_mb[number] = resident_mb(os.getpid())
             worker_mb[number] = worker
     env.close()
     with capsys.disabled():
         sys.stdout.write(f"\nMB after {LOOK_AFTER} episodes: parent {parent_mb}, worker {worker_mb}\n")
     assert parent_mb[100] - parent_mb[10] < 30
     assert max(worker_mb.values()) < 1.3 * min(worker_mb.values())
-
-
-def alone_mb() -> float:
-    """Resident memory of this process alone."""
-    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
