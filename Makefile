@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow test-faults check bench format setup clean system-libraries
+.PHONY: demo test test-slow test-faults test-fuzz test-seeds check bench format setup clean system-libraries furniture
 
 demo: setup
 	$(BIN)/python examples/speed_sweep.py
@@ -17,6 +17,12 @@ test-slow: setup
 
 test-faults: setup
 	$(BIN)/python -m pytest -m faults $(PYTEST_ARGS)
+
+test-fuzz: setup
+	$(BIN)/python -m pytest -m fuzz $(PYTEST_ARGS)
+
+test-seeds: setup
+	$(BIN)/python -m pytest -m seeds $(PYTEST_ARGS)
 
 check: setup
 	$(BIN)/ruff check .
@@ -35,6 +41,9 @@ setup: system-libraries $(STAMP)
 
 system-libraries:
 	@sh .ci/system_libraries.sh $(PYTHON)
+
+furniture:
+	@sh .ci/system_libraries.sh $(PYTHON) sweethome3d-furniture
 
 $(STAMP): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

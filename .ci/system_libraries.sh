@@ -1,10 +1,13 @@
 #!/bin/sh
 # Installs the Debian/Ubuntu packages that slamgym needs, if any is missing: EGL and Mesa for rendering, X11 libraries
-# for ORB-SLAM3, and what the Python named by the first argument lacks to make a virtual environment.
+# for ORB-SLAM3, what the Python named by the first argument lacks to make a virtual environment, and the packages that
+# the other arguments name.
 set -eu
 
 packages="libegl1 libgl1 libopengl0 libglx0 libgl1-mesa-dri libegl-mesa0 libsm6 libice6 libx11-6 libxext6"
 python=${1:-python3}
+[ $# -eq 0 ] || shift
+packages="$packages $*"
 
 if ! command -v dpkg-query >/dev/null 2>&1; then
     echo "note: not a Debian or Ubuntu system; slamgym needs your system's packages for EGL, OpenGL, Mesa and X11" >&2

@@ -1,9 +1,16 @@
 """Path planning and agents that drive the robot."""
 
+from slamgym.agents.cautious import Cautious
 from slamgym.agents.follower import Agent, PathFollower
+from slamgym.agents.look_around import LookAround
 from slamgym.agents.patrol import Patrol
 
-AGENTS: dict[str, type[PathFollower]] = {"follower": PathFollower, "patrol": Patrol}
+AGENTS: dict[str, type[Agent]] = {
+    "cautious": Cautious,
+    "follower": PathFollower,
+    "look_around": LookAround,
+    "patrol": Patrol,
+}
 """Name -> class. A new agent is one file and one line here."""
 
-__all__ = ["AGENTS", "Agent", "PathFollower", "Patrol"]
+__all__ = ["AGENTS", "Agent", "Cautious", "LookAround", "PathFollower", "Patrol"]

@@ -18,9 +18,12 @@ AHEAD_PENALTY = 0.1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Path:
-    """A polyline. xy: world points (P, 2), metres, P >= 2; arc_m: the distances (P,) along the path to each of them."""
+    """A polyline. xy: world points (P, 2), metres, P >= 2; arc_m: the distances (P,) along the path to each of them.
+    goals_m: distances (G,) of the goals that it was planned through; its ends are none.
+    """
 
     xy: FloatArray
+    goals_m: FloatArray = field(default_factory=lambda: np.zeros(0))
     arc_m: FloatArray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -39,6 +42,10 @@ class Path:
         k = int(np.clip(np.searchsorted(self.arc_m, s, side="right") - 1, 0, len(self.xy) - 2))
         dx, dy = self.xy[k + 1] - self.xy[k]
         return float(np.arctan2(dy, dx))
+
+    def next_goal(self, s: float) -> float:
+        """Distance along the path of the first goal at or beyond distance `s`; infinite when there is none."""
+        return float(np.min(self.goals_m[self.goals_m >= s], initial=np.inf))
 
     def project(self, xy: tuple[float, float] | FloatArray, s_hint: float) -> float:
         """Distance along the path of the point nearest to `xy` (2,), at `s_hint` or up to 0.5 m ahead of it.
@@ -67,7 +74,7 @@ class Path:
     def cut(self, length_m: float) -> "Path":
         """The first `length_m` metres of the path."""
         kept = self.xy[self.arc_m < length_m - 1e-9]
-        return Path(np.vstack([kept, self.point_at(length_m)]))
+        return Path(np.vstack([kept, self.point_at(length_m)]), self.goals_m[self.goals_m < length_m])
 
 
 def arc_length(xy: FloatArray) -> FloatArray:

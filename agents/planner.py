@@ -11,7 +11,7 @@ from scipy.ndimage import distance_transform_edt
 from skimage.graph import MCP_Geometric
 
 from slamgym.agents.dubins import Pose, dubins_curves
-from slamgym.agents.path import SPACING_M, Path, arc_length
+from slamgym.agents.path import PROJECTION_WINDOW_M, SPACING_M, Path, arc_length
 from slamgym.agents.smooth import smooth
 from slamgym.errors import ConfigError, SceneError, unknown_word
 from slamgym.scenes.occupancy import OccupancyGrid
@@ -41,7 +41,8 @@ def plan_path(
     that long, mostly a few percent more and at times up to twice that.
 
     Legs lead to goals at least 2.5 m away where the house has them, keep away from obstacles, and are joined by curves;
-    where there is no room for a curve the path turns on the spot. Raises SceneError when no such path is found.
+    where there is no room for a curve the path turns on the spot. Its `goals_m` tell where one leg ends and the next
+    begins. Raises SceneError when no such path is found.
     """
     if tour not in TOURS:
         raise ConfigError(unknown_word("tour", tour, TOURS))
@@ -88,14 +89,26 @@ class _Roads:
         return int(rng.choice(np.flatnonzero(distance >= min(GOAL_DISTANCE_M, distance.max() / 2))))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Way:
+    """Legs joined so far: points xy (P, 2). goals_m: distances along it of where one leg ends and the next begins."""
+
+    xy: FloatArray
+    goals_m: tuple[float, ...] = ()
+
+    @property
+    def length_m(self) -> float:
+        return float(arc_length(self.xy)[-1])
+
+
 def _one_way(roads: _Roads, length_m: float, rng: np.random.Generator) -> Path:
     """A path through random goals, exactly `length_m` long."""
     here = int(rng.integers(len(roads.goals)))
-    xy = None
+    way = None
     for _ in range(_leg_limit(length_m)):
         goal = roads.far_goal(here, rng)
-        xy, here = _join(xy, roads.route(here, goal), roads), goal
-        if arc_length(xy)[-1] >= length_m and (path := _finish(xy, roads)).length_m >= length_m:
+        way, here = _join(way, roads.route(here, goal), roads), goal
+        if way.length_m >= length_m and (path := _finish(way, roads)).length_m >= length_m:
             return path.cut(length_m)
     raise _no_path(length_m)
 
@@ -117,10 +130,10 @@ def _round_trip(roads: _Roads, length_m: float, rng: np.random.Generator) -> Pat
     return min(found, key=lambda path: path.length_m)
 
 
-def _loop(roads: _Roads, home: int, length_m: float, rng: np.random.Generator) -> FloatArray:
-    """A way (P, 2) through random goals and back to `home`, about `length_m` long."""
+def _loop(roads: _Roads, home: int, length_m: float, rng: np.random.Generator) -> _Way:
+    """A way through random goals and back to `home`, about `length_m` long."""
     to_home = roads.distances(home)
-    here, xy, driven_m = home, None, 0.0
+    here, way, driven_m = home, None, 0.0
     for _ in range(_leg_limit(length_m)):
         goal = roads.far_goal(here, rng)
         to_goal = roads.distances(here)
@@ -129,32 +142,36 @@ def _loop(roads: _Roads, home: int, length_m: float, rng: np.random.Generator) -
             last = (rest >= 0) & (to_goal > MIN_LEG_M) & (to_home > MIN_LEG_M)
             if last.any():
                 goal = int(np.argmin(np.where(last, rest, np.inf)))
-                return _join(_join(xy, roads.route(here, goal), roads), roads.route(goal, home), roads)
-        xy, here = _join(xy, roads.route(here, goal), roads), goal
-        driven_m = float(arc_length(xy)[-1])
+                return _join(_join(way, roads.route(here, goal), roads), roads.route(goal, home), roads)
+        way, here = _join(way, roads.route(here, goal), roads), goal
+        driven_m = way.length_m
     raise _no_path(length_m)
 
 
-def _join(way: FloatArray | None, leg: FloatArray, roads: _Roads) -> FloatArray:
-    """The way (P, 2) and then the leg (Q, 2), joined by the shortest free curve, or else by turning on the spot."""
+def _join(way: _Way | None, leg: FloatArray, roads: _Roads) -> _Way:
+    """The way and then the leg (Q, 2), joined by the shortest free curve, or else by turning on the spot."""
     if way is None:
-        return leg
+        return _Way(leg)
     for radius_m in JOINT_RADII_M:
         joined = list(_curved_joints(way, leg, radius_m, roads))
         if joined:
-            return min(joined, key=lambda xy: float(arc_length(xy)[-1]))
-    return np.concatenate([way, leg[1:]])
+            return min(joined, key=lambda longer: longer.length_m)
+    return _Way(np.concatenate([way.xy, leg[1:]]), (*way.goals_m, way.length_m))
 
 
-def _curved_joints(way: FloatArray, leg: FloatArray, radius_m: float, roads: _Roads) -> Iterator[FloatArray]:
-    """Way and leg joined by Dubins curves that leave the one and enter the other up to 0.8 m from where they meet."""
+def _curved_joints(way: _Way, leg: FloatArray, radius_m: float, roads: _Roads) -> Iterator[_Way]:
+    """Way and leg joined by Dubins curves that leave the one and enter the other up to 0.8 m from where they meet.
+
+    The goal is then the middle of the curve.
+    """
     for trims in product(JOINT_TRIMS_M, repeat=2):
-        i, j = (min(round(t / SPACING_M), len(xy) - 2) for t, xy in zip(trims, (way, leg), strict=True))
-        before, after = way[: len(way) - i], leg[j:]
+        i, j = (min(round(t / SPACING_M), len(xy) - 2) for t, xy in zip(trims, (way.xy, leg), strict=True))
+        before, after = way.xy[: len(way.xy) - i], leg[j:]
         start, goal = _pose(before[-1], before[-1] - before[-2]), _pose(after[0], after[1] - after[0])
         for curve in dubins_curves(start, goal, radius_m, SPACING_M):
             if roads.is_free(curve).all():
-                yield np.concatenate([before, curve[1:-1], after])
+                goal_m = float(arc_length(before)[-1] + arc_length(curve)[-1] / 2)
+                yield _Way(np.concatenate([before, curve[1:-1], after]), (*way.goals_m, goal_m))
                 break
 
 
@@ -162,8 +179,12 @@ def _pose(xy: FloatArray, direction: FloatArray) -> Pose:
     return float(xy[0]), float(xy[1]), float(np.arctan2(direction[1], direction[0]))
 
 
-def _finish(xy: FloatArray, roads: _Roads) -> Path:
-    return Path(smooth(xy, roads.is_free, JOINT_SIGMAS_M))
+def _finish(way: _Way, roads: _Roads) -> Path:
+    """The way, smoothed; a goal is where it comes nearest to what was one before."""
+    rough, path = Path(way.xy), Path(smooth(way.xy, roads.is_free, JOINT_SIGMAS_M))
+    scale = path.length_m / rough.length_m
+    goals_m = [path.project(rough.point_at(s), max(0.0, s * scale - PROJECTION_WINDOW_M / 2)) for s in way.goals_m]
+    return Path(path.xy, np.array(goals_m))
 
 
 def _leg_limit(length_m: float) -> int:

@@ -24,7 +24,8 @@ class Part:
 
     vertices: float32 (V, 3). faces: int32 (F, 3), counter-clockwise seen from outside. uv: float32 (V, 2), (0, 0) at
     the texture's lower left, or None without texture. light: float32 (V, 3) factors that lighting multiplies the
-    material with, or None before it is baked. solid: whether a robot bumps into it.
+    material with, or None before it is baked. colour: float32 (V, 3) factors in [0, 1] of the material, or None.
+    solid: whether a robot bumps into it.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Part:
     faces: NDArray[np.int32]
     uv: NDArray[np.float32] | None = None
     light: NDArray[np.float32] | None = None
+    colour: NDArray[np.float32] | None = None
     solid: bool = True
 
 
@@ -58,11 +60,32 @@ class Lamp:
     radius: float = 0.12
 
 
+@dataclass(frozen=True, slots=True)
+class Window:
+    """A rectangle that daylight comes in through: its centre and half sides, metres, world frame.
+
+    Light comes in along half_u x half_v. intensity 1 is that of an overcast sky on a clear pane.
+    """
+
+    centre: tuple[float, float, float]
+    half_u: tuple[float, float, float]
+    half_v: tuple[float, float, float]
+    intensity: float = 1.0
+    colour: tuple[float, float, float] = (0.93, 0.97, 1.0)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class House:
-    """A scene: `parts` in world coordinates; names of parts of one piece of furniture share the text before '/'."""
+    """A scene: `parts` in world coordinates; names of parts of one piece of furniture share the text before '/'.
+
+    assumptions: what was taken for granted when it was read, such as "up axis: y, as glTF has it". defects: what was
+    repaired or left out, each naming file and node. One line each.
+    """
 
     name: str
     parts: tuple[Part, ...]
     rooms: tuple[Room, ...] = ()
     lamps: tuple[Lamp, ...] = ()
+    windows: tuple[Window, ...] = ()
+    assumptions: tuple[str, ...] = ()
+    defects: tuple[str, ...] = ()

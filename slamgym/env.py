@@ -1,6 +1,5 @@
 """`HomeRobot-v0`: a home robot with an RGB-D camera that drives through a house."""
 
-from functools import lru_cache
 from typing import Any
 
 import gymnasium as gym
@@ -16,11 +15,8 @@ from slamgym.eval.drive import summarize_drive
 from slamgym.geometry import mast_camera_pose
 from slamgym.params import DriveParams, SlamInLoopParams, split_params
 from slamgym.render import Renderer
-from slamgym.robot import ROBOT_HEIGHT, ROBOT_RADIUS, DifferentialDrive
-from slamgym.scenes.house import House
-from slamgym.scenes.light import bake_light
-from slamgym.scenes.occupancy import OccupancyGrid, free_space, occupancy_grid
-from slamgym.scenes.registry import check_scene, load_scene
+from slamgym.robot import DifferentialDrive
+from slamgym.stage import load_stage
 from slamgym.types import FloatArray, Summary
 
 Observation = dict[str, Any]
@@ -28,17 +24,6 @@ Info = dict[str, Any]
 
 BLUR_SAMPLES = 5
 END_REACHED_M = 0.05
-CLEARANCE_M = 0.05
-"""Kept free around the robot when paths are planned."""
-
-
-@lru_cache(maxsize=2)
-def load_house(scene: str, lighting: str) -> tuple[House, OccupancyGrid, NDArray[np.bool_]]:
-    """A house as the environment needs it: lit, with its grid and the free space for the robot's centre."""
-    house = load_scene(scene)
-    grid = occupancy_grid(house, ROBOT_HEIGHT)
-    free = free_space(grid, ROBOT_RADIUS + CLEARANCE_M)
-    return bake_light(house) if lighting == "baked" else house, grid, free
 
 
 class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
@@ -51,7 +36,8 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
     Observation: `rgb` uint8 (H, W, 3), `depth` float32 (H, W) in metres along the optical axis with 0 = no measurement,
     `waypoints` float32 (5, 2): the next points of the path, 0.2 m apart, in the robot's frame (x forward, y left).
     Info: `stamp_ns`, `T_world_cam` (4, 4), `robot` (x, y, yaw), `speed_mps`, `yaw_rate_radps`, `progress_m`,
-    `path_length_m`, `distance_m`, `collision`, `action_scale` (m/s and rad/s of an action of 1).
+    `path_length_m`, `goal_m` (along the path to the next goal that it was planned to, infinite after the last),
+    `distance_m`, `collision`, `action_scale` (m/s and rad/s of an action of 1).
 
     The drive ends within `END_REACHED_M` of the path's end.
 
@@ -65,7 +51,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         if render_mode not in (None, "rgb_array"):
             raise ConfigError(unknown_word("render_mode", str(render_mode), ["rgb_array"]))
         self.params, self.slam_params = self._check(params)
-        check_scene(self.params.scene)
+        self.params.scene_source()
         self.render_mode = render_mode
         self.metadata = {**type(self).metadata, "render_fps": self.params.fps}
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
@@ -86,15 +72,22 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         super().reset(seed=seed)
         tour = _tour(options)
         path_seed, noise_seed = self.np_random.integers(2**63, size=2)
-        house, self.grid, free = load_house(self.params.scene, self.params.lighting)
+        stage = load_stage(self.params)
+        self.grid = stage.grid
         self.path: Path = plan_path(
-            self.grid, free, self.params.path_length_m, np.random.default_rng(path_seed), tour=tour
+            stage.grid, stage.free, self.params.path_length_m, np.random.default_rng(path_seed), tour=tour
         )
         self._noise_rng = np.random.default_rng(noise_seed)
         if self._robot is None:
-            self._robot = DifferentialDrive(house)
+            self._robot = DifferentialDrive(stage.house)
         if self._renderer is None:
-            self._renderer = Renderer(house, self.params.camera, self.params.lighting)
+            self._renderer = Renderer(
+                stage.house,
+                self.params.camera,
+                self.params.lighting,
+                self.params.brightness,
+                self.params.multisampling,
+            )
         x, y = self.path.xy[0]
         self._state = self._before = self._robot.reset(x, y, self.path.heading_at(0.0))
         self._step = 0
@@ -186,6 +179,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
             "yaw_rate_radps": state.yaw_rate,
             "progress_m": self._progress,
             "path_length_m": self.path.length_m,
+            "goal_m": self.path.next_goal(self._progress) - self._progress,
             "distance_m": self._distance,
             "collision": state.collided,
             "action_scale": np.array([self.params.speed, self.params.top_turn_rate]),

@@ -16,6 +16,10 @@ class SceneError(SlamgymError):
     """A scene cannot be loaded, or the robot cannot drive in it."""
 
 
+class SceneWarning(UserWarning):
+    """Something in a scene's files was repaired or left out; which file and node."""
+
+
 class RenderError(SlamgymError):
     """No image can be rendered on this machine, for example because EGL is missing."""
 

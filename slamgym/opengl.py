@@ -98,9 +98,12 @@ class Context:
 
 
 class Canvas:
-    """A framebuffer of colour and depth, one sample a pixel. Row 0 is the first row of what `read` returns."""
+    """A framebuffer of colour and depth with `samples` a pixel, 0 for one at its centre; row 0 is an image's first.
 
-    def __init__(self, width: int, height: int) -> None:
+    Raises RenderError for an image that is larger than OpenGL allows.
+    """
+
+    def __init__(self, width: int, height: int, samples: int = 0) -> None:
         from OpenGL import GL
 
         most = int(GL.glGetIntegerv(GL.GL_MAX_RENDERBUFFER_SIZE))
@@ -114,7 +117,7 @@ class Canvas:
         attachments = (GL.GL_COLOR_ATTACHMENT0, GL.GL_DEPTH_ATTACHMENT)
         for buffer, pixel_format, attachment in zip(self._buffers, formats, attachments, strict=True):
             GL.glBindRenderbuffer(GL.GL_RENDERBUFFER, buffer)
-            GL.glRenderbufferStorage(GL.GL_RENDERBUFFER, pixel_format, width, height)
+            GL.glRenderbufferStorageMultisample(GL.GL_RENDERBUFFER, samples, pixel_format, width, height)
             GL.glFramebufferRenderbuffer(GL.GL_FRAMEBUFFER, attachment, GL.GL_RENDERBUFFER, buffer)
         GL.glViewport(0, 0, width, height)
         GL.glEnable(GL.GL_DEPTH_TEST)
@@ -123,16 +126,28 @@ class Canvas:
         GL.glPixelStorei(GL.GL_UNPACK_ALIGNMENT, 1)
 
     def clear(self) -> None:
+        """Draw here from now on, on black."""
         from OpenGL import GL
 
+        GL.glBindFramebuffer(GL.GL_FRAMEBUFFER, self._framebuffer)
         GL.glClear(GL.GL_COLOR_BUFFER_BIT | GL.GL_DEPTH_BUFFER_BIT)
 
+    def resolve(self, multisampled: "Canvas") -> None:
+        """Take over the colours of a canvas of the same size, each pixel the mean of its samples' grey values."""
+        from OpenGL import GL
+
+        GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, multisampled._framebuffer)
+        GL.glBindFramebuffer(GL.GL_DRAW_FRAMEBUFFER, self._framebuffer)
+        whole = (0, 0, self.width, self.height)
+        GL.glBlitFramebuffer(*whole, *whole, GL.GL_COLOR_BUFFER_BIT, GL.GL_NEAREST)
+
     def read(self) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-        """Colour (H, W, 3) and window depth (H, W) in [0, 1], 1 where nothing was drawn."""
+        """Colour (H, W, 3) and window depth (H, W) in [0, 1], 1 where nothing was drawn; of one sample a pixel."""
         from OpenGL import GL
 
         rgb = np.empty((self.height, self.width, 3), np.uint8)
         depth = np.empty((self.height, self.width), np.float32)
+        GL.glBindFramebuffer(GL.GL_FRAMEBUFFER, self._framebuffer)
         GL.glReadPixels(0, 0, self.width, self.height, GL.GL_RGB, GL.GL_UNSIGNED_BYTE, rgb)
         GL.glReadPixels(0, 0, self.width, self.height, GL.GL_DEPTH_COMPONENT, GL.GL_FLOAT, depth)
         return rgb, depth
@@ -167,14 +182,14 @@ class Drawing:
             for primitive, batch in zip(self._primitives, batches, strict=True)
         ]
 
-    def draw(self, which: Iterable[int], view: FloatArray, projection: FloatArray) -> None:
-        """Draw the batches of these indices; view and projection: (4, 4)."""
+    def draw(self, which: Iterable[int], view: FloatArray, projection: FloatArray, brightness: float) -> None:
+        """Draw the batches of these indices; view and projection: (4, 4); brightness: factor of all colours."""
         from OpenGL import GL
 
         self._program._bind()
         for name, value in {"M": np.eye(4), "V": view, "P": projection}.items():
             self._program.set_uniform(name, value)
-        self._program.set_uniform("material.base_color_factor", np.ones(4))
+        self._program.set_uniform("material.base_color_factor", np.full(4, brightness))
         for index in which:
             primitive, texture = self._batches[index]
             texture._bind()

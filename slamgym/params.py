@@ -1,6 +1,7 @@
 """The parameters of the environments: every keyword of `gym.make`, checked in one place and recorded with results."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
@@ -9,7 +10,9 @@ from slamgym.camera import CAMERAS, PinholeCamera, resolve_camera
 from slamgym.checked_params import Params
 from slamgym.errors import ConfigError, unknown_word
 from slamgym.eval.robustness import MapPolicy
-from slamgym.render import Lighting
+from slamgym.files import recorded_hash
+from slamgym.render import MAX_BRIGHTNESS, Lighting, Multisampling
+from slamgym.scenes.registry import SceneSource, find_scene
 from slamgym.slam.backend import SlamConfig, load_backend
 from slamgym.slam.session import Limits, SlamSession, Sync
 
@@ -25,7 +28,11 @@ LONGEST_STEP_M = 0.4
 class DriveParams(Params):
     """The house, the drive through it and the camera."""
 
-    scene: str = Field("procedural", description="house: 'procedural' or 'procedural:SEED'")
+    scene: str = Field("procedural", description="house: 'procedural:SEED', 'sweethome:SEED', or a file")
+    scene_options: dict[str, Any] = Field(default_factory=dict, description="options of the scene's loader")
+    occupancy_map: Path | None = Field(
+        None, description="YAML file of a ROS map_server map, in place of the grid computed from the scene"
+    )
     speed: float = Field(0.2, gt=0, le=10, description="top speed, m/s")
     turn_rate: float | None = Field(
         None, gt=0, le=50, description=f"top turn rate, rad/s; None: speed / {RADIUS_OF_TURN} m"
@@ -38,6 +45,18 @@ class DriveParams(Params):
     rgb_noise: float = Field(0.0, ge=0, le=128, description="standard deviation of the image noise, grey levels")
     motion_blur: float = Field(0.0, ge=0, le=1, description="exposure time as a share of the time between frames")
     lighting: Lighting = Field("baked", description="baked light, or the bare textures")
+    brightness: float = Field(1.0, gt=0, le=MAX_BRIGHTNESS, description="factor of all grey values, cut off at white")
+    multisampling: Multisampling = Field(
+        0,
+        description="samples a pixel of the colour image: 0 for one at its centre, or 4 for smooth edges at three "
+        "times the cost; depth always has one",
+    )
+
+    @field_validator("multisampling", mode="before")
+    @classmethod
+    def _as_number(cls, samples: Any) -> Any:
+        """From the command line it comes as text, which pydantic does not take for one of some numbers."""
+        return int(samples) if isinstance(samples, str) and samples.isdigit() else samples
 
     @field_validator("camera", mode="before")
     @classmethod
@@ -46,6 +65,13 @@ class DriveParams(Params):
         if resolved.distortion:
             raise ConfigError(f"camera: expected one without distortion to render, got {resolved.distortion}")
         return resolved
+
+    @field_validator("occupancy_map")
+    @classmethod
+    def _existing_map(cls, path: Path | None) -> Path | None:
+        if path is not None and not path.is_file():
+            raise ConfigError(f"occupancy_map: expected the YAML file of a map, got {str(path)!r}, which is not there")
+        return path
 
     @model_validator(mode="after")
     def _short_steps(self) -> Self:
@@ -56,6 +82,19 @@ class DriveParams(Params):
                 "drive slower or take more frames a second"
             )
         return self
+
+    def scene_source(self) -> SceneSource:
+        """What the house is loaded from; raises SceneError, and ConfigError for its options."""
+        return find_scene(self.scene, self.scene_options)
+
+    def recorded(self) -> dict[str, Any]:
+        """All parameters, the scene's options resolved."""
+        return {**self.model_dump(), "scene_options": self.scene_source().options.model_dump()}
+
+    def versions(self) -> dict[str, str]:
+        """What a drive depends on besides the parameters: hashes of files."""
+        files = {"scene": self.scene_source().source, "occupancy_map": self.occupancy_map}
+        return {f"{name}_sha256": recorded_hash(file) for name, file in files.items() if isinstance(file, Path)}
 
     @property
     def top_turn_rate(self) -> float:

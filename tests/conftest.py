@@ -45,6 +45,14 @@ def faulty(monkeypatch):
     return lambda name: f"faulty_backends:{name}"
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _own_cache(tmp_path_factory):
+    """Light is baked anew, once for all tests; what a user has in the cache is neither read nor touched."""
+    with pytest.MonkeyPatch.context() as environment:
+        environment.setenv("SLAMGYM_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
 FRAMES_FED: Counter[str] = Counter()
 
 

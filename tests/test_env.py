@@ -12,6 +12,7 @@ from slamgym.env import HomeRobotEnv
 from slamgym.errors import ConfigError, SceneError
 from slamgym.rollout import run_episode
 from slamgym.scenes.house import House, Material, Part
+from slamgym.scenes.loader import SceneOptions
 from slamgym.scenes.registry import SCENES
 
 SMALL = {"camera": "small", "path_length_m": 2.0, "speed": 0.5}
@@ -183,14 +184,21 @@ def test_bad_use_is_told_in_one_line(env):
         env.step(np.array([np.nan, 0.0], np.float32))
 
 
-def cupboard(seed: int) -> House:
+class Cupboard:
     """A floor of 0.6 x 0.6 m, in which no robot can turn round."""
-    corners = np.array([[0, 0, 0], [0.6, 0, 0], [0.6, 0.6, 0], [0, 0.6, 0]], np.float32)
-    return House("cupboard", (Part("floor", Material("wood"), corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)),))
+
+    Options = SceneOptions
+    suffixes = ()
+
+    @staticmethod
+    def load(source, options):
+        corners = np.array([[0, 0, 0], [0.6, 0, 0], [0.6, 0.6, 0], [0, 0.6, 0]], np.float32)
+        faces = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+        return House("cupboard", (Part("floor", Material("wood"), corners, faces),))
 
 
 def test_a_house_without_room_is_refused_and_the_environment_can_be_closed(monkeypatch):
-    monkeypatch.setitem(SCENES, "cupboard", f"{__name__}:cupboard")
+    monkeypatch.setitem(SCENES, "cupboard", f"{__name__}:Cupboard")
     env = gym.make("HomeRobotSLAM-v0", scene="cupboard", slam="groundtruth")
     with pytest.raises(SceneError, match="no room for the robot: expected at least"):
         env.reset(seed=0)

@@ -11,6 +11,7 @@ ARGUMENTS = {
     "repeatability.py": [*SHORT, "--repeats", "2", "--busy-loops", "1", "--camera", "small", "--syncs", "realtime"],
     "backends.py": [*SHORT, "--seeds", "1", "--speed", "1.0", "--camera", "small"],
     "losses.py": [*SHORT, "--scenes", "procedural:0", "--seeds", "7", "--camera", "small", "--slam", "groundtruth"],
+    "realism.py": [*SHORT, "--scenes", "procedural:0", "--frames", "4", "--camera", "small", "--out", "OUT"],
     "views.py": [*SHORT, "--out", "OUT.png"],
     "speed_sweep.py": [*SHORT, "--speeds", "0.5", "1.0", "--out", "OUT"],
 }

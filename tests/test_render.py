@@ -5,6 +5,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from embreex.mesh_construction import TriangleMesh
@@ -167,6 +168,80 @@ def test_light_multiplies_the_material() -> None:
         lit, bare = (renderer.render(mast_camera_pose(0, 0, 0, 0))[0][60, 80] for renderer in (baked, flat))
     np.testing.assert_allclose(lit, 255 * np.array([0.25, 0.6, 0.88]), atol=1)
     np.testing.assert_allclose(bare, 255 * np.array([0.5, 1.0, 0.8]), atol=1)
+
+
+def test_vertex_colours_multiply_texture_material_and_light() -> None:
+    texture = np.full((4, 4, 3), (255, 255, 102), np.uint8)
+    part = replace(
+        wall(2.0, Material("w", (0.5, 1.0, 1.0), texture)),
+        colour=np.full((4, 3), (1.0, 0.25, 0.5), np.float32),
+        light=np.full((4, 3), (0.6, 1.0, 1.0), np.float32),
+    )
+    with Renderer(House("w", (part,)), CAMERA) as baked, Renderer(House("w", (part,)), CAMERA, "flat") as flat:
+        lit, bare = (renderer.render(mast_camera_pose(0, 0, 0, 0))[0][60, 80] for renderer in (baked, flat))
+    np.testing.assert_allclose(lit, 255 * np.array([0.3, 0.25, 0.2]), atol=1)
+    np.testing.assert_allclose(bare, 255 * np.array([0.5, 0.25, 0.2]), atol=1)
+
+
+def test_vertex_colours_are_blended_across_a_face() -> None:
+    colour = np.array([[1, 0, 0], [0, 0, 1], [0, 0, 1], [1, 0, 0]], np.float32)  # left red, right blue
+    house = House("w", (replace(wall(2.0, Material("w"), half=1.0), colour=colour),))
+    with Renderer(house, CAMERA, "flat") as renderer:
+        rgb, _ = renderer.render(mast_camera_pose(0, 0, 0, 0))
+    left_to_right = (np.arange(40, 120) - 81.3 + 55) / 110  # the wall is 110 px wide, its middle at 81.3
+    np.testing.assert_allclose(rgb[60, 40:120, 2], 255 * left_to_right, atol=1.5)
+    np.testing.assert_allclose(rgb[60, 40:120, 0], 255 * (1 - left_to_right), atol=1.5)
+
+
+@pytest.mark.parametrize("lighting", ["baked", "flat"])
+@pytest.mark.parametrize("brightness", [0.25, 1.0, 2.0])
+def test_brightness_multiplies_grey_values_and_clips_at_white(lighting: str, brightness: float) -> None:
+    part = replace(wall(2.0, Material("w", (0.2, 0.4, 0.8))), light=np.ones((4, 3), np.float32))
+    with Renderer(House("w", (part,)), CAMERA, lighting, brightness=brightness) as renderer:
+        seen, depth = renderer.render(mast_camera_pose(0, 0, 0, 0))
+    expected = np.minimum(255 * brightness * np.array([0.2, 0.4, 0.8]), 255)
+    np.testing.assert_allclose(seen[60, 80], expected, atol=1)
+    assert (depth > 0).all()
+
+
+def test_light_above_white_is_still_there_when_it_is_dimmed() -> None:
+    part = replace(wall(2.0, Material("lamp")), light=np.full((4, 3), 1.5, np.float32))
+    with Renderer(House("w", (part,)), CAMERA, brightness=0.5) as renderer:
+        np.testing.assert_allclose(renderer.render(mast_camera_pose(0, 0, 0, 0))[0][60, 80], 0.75 * 255, atol=1)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("brightness", 0.0), ("brightness", -1.0), ("brightness", 4.1), ("brightness", np.nan), ("multisampling", 3)],
+)
+def test_other_brightness_and_multisampling_are_refused_in_one_line(name: str, value: float) -> None:
+    with pytest.raises(ConfigError, match=rf"^{name}: expected .*got {value}$"):
+        Renderer(cluttered_room(), CAMERA, "flat", **{name: value})  # type: ignore[arg-type]
+
+
+def test_multisampling_shares_a_pixel_that_an_edge_cuts() -> None:
+    half = (81.3 - 30.0) * 2 / 110  # the wall's left edge passes through the middle of column 30
+    house = House("w", (wall(2.0, Material("w", (1.0, 1.0, 1.0)), half=half),))
+    with Renderer(house, CAMERA, "flat") as hard, Renderer(house, CAMERA, "flat", multisampling=4) as soft:
+        hard_row, soft_row = (renderer.render(mast_camera_pose(0, 0, 0, 0))[0][60, :, 0] for renderer in (hard, soft))
+    assert hard_row[30] in (0, 255)
+    assert soft_row[30] in (127, 128)  # two of four samples
+    assert soft_row[[28, 29, 31, 32]].tolist() == hard_row[[28, 29, 31, 32]].tolist() == [0, 0, 255, 255]
+
+
+def test_multisampling_changes_edges_alone_and_leaves_depth(room: Renderer) -> None:
+    shares = []
+    with Renderer(cluttered_room(), CAMERA, "flat", multisampling=4) as soft:
+        for pose in poses(6):
+            (rgb, depth), (soft_rgb, soft_depth) = room.render(pose), soft.render(pose)
+            assert (depth == soft_depth).all()
+            changed = np.abs(rgb.astype(int) - soft_rgb).max(axis=2) > 2
+            shares.append(np.mean(changed))
+            assert (soft.render(pose)[0] == soft_rgb).all()
+            around = np.ones((3, 3))
+            spread = cv2.dilate(rgb, around).astype(int) - cv2.erode(rgb, around)
+            assert not changed[spread.max(axis=2) == 0].any()  # beside no edge
+    assert 0.002 < np.mean(shares) < 0.1
 
 
 def test_the_same_pose_gives_the_same_bits_in_renderers_side_by_side(room: Renderer) -> None:

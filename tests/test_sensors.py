@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.stats import norm
 
 from slamgym.sensors import icl_nuim_depth_noise, rgb_noise
+from slamgym.types import FloatArray
 
 
 def wall(depth_m: float, shape: tuple[int, int] = (120, 160)) -> NDArray[np.float32]:
@@ -32,12 +34,44 @@ def test_depth_noise_in_metres_grows_with_the_square_of_depth(depth_m: float) ->
     assert error.std() == pytest.approx(np.sqrt(1 / 36 + 1 / 12) * depth_m**2 / 351.3, rel=0.1)
 
 
+def on_a_flat_wall(depth_m: float) -> tuple[FloatArray, FloatArray]:
+    """Depths, metres, that the model can measure of a flat wall, and how probable each is.
+
+    Reading beside the pixel changes nothing there: disparity 351.3 / z plus N(0, 1/6), rounded to whole numbers.
+    """
+    levels = np.arange(1.0, 1000.0)
+    below, above = (norm.cdf((levels + side - 351.3 / depth_m) * 6.0) for side in (-0.5, 0.5))
+    return 351.3 / levels, above - below
+
+
+@pytest.mark.parametrize("depth_m", [1.0, 2.0, 3.0, 4.0])
+def test_depth_noise_on_a_flat_wall_is_the_formulas(depth_m: float) -> None:
+    measured = icl_nuim_depth_noise(wall(depth_m, (480, 640)), np.random.default_rng(7)).astype(np.float64)
+    values, probability = on_a_flat_wall(depth_m)
+    mean = values @ probability
+    deviation = np.sqrt((values - mean) ** 2 @ probability)
+    assert measured.mean() - depth_m == pytest.approx(mean - depth_m, abs=4 * deviation / np.sqrt(measured.size))
+    assert measured.std() == pytest.approx(deviation, rel=0.02)
+    steps = np.diff(np.unique(measured))
+    assert steps == pytest.approx(np.full(steps.shape, depth_m**2 / 351.3), rel=0.02)  # 351.3 / d changes by that
+
+
 def test_depth_noise_reads_beside_the_pixel() -> None:
     step = np.where(np.arange(160) < 80, 1.0, 2.0).astype(np.float32) * wall(1.0)
     changed = np.abs(icl_nuim_depth_noise(step, np.random.default_rng(2)) - step) > 0.1
     assert changed[:, 79:81].mean() > 0.3  # the shift has to reach past the step: P(N > 0.2 to 0.5)
     assert not changed[:, :75].any()
     assert not changed[:, 85:].any()
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_depth_noise_shifts_by_half_a_pixel_along_both_axes(axis: int) -> None:
+    disparity = 400.0 + 4.0 * np.indices((150, 150))[axis]  # four levels a pixel, so that shifts outweigh the rest
+    depth = (351.3 / disparity).astype(np.float32)
+    measured = 351.3 / icl_nuim_depth_noise(depth, np.random.default_rng(8))
+    error = (measured - disparity)[5:-5, 5:-5]
+    assert error.std() == pytest.approx(np.sqrt(1 / 36 + 1 / 12 + (0.5 * 4.0) ** 2), rel=0.03)
+    assert abs(error.mean()) < 0.06
 
 
 def test_depth_noise_leaves_holes_and_does_not_mix_them_in() -> None:

@@ -5,6 +5,7 @@ from slamgym.eval.plots.cumulative import plot_cumulative
 from slamgym.eval.plots.drive_map import plot_map
 from slamgym.eval.plots.evaluation import evaluation_plots
 from slamgym.eval.plots.failure_curve import plot_failure_curve
+from slamgym.eval.plots.floor_plan import plot_floor_plan
 from slamgym.eval.plots.names import printable
 from slamgym.eval.plots.scatter import RankCorrelation, plot_scatter
 from slamgym.eval.plots.sorted_bars import plot_sorted_bars
@@ -18,6 +19,7 @@ __all__ = [
     "plot_boxes",
     "plot_cumulative",
     "plot_failure_curve",
+    "plot_floor_plan",
     "plot_map",
     "plot_scatter",
     "plot_sorted_bars",

@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from slamgym.scenes.home.textures import Colour, Image, noise, tinted
+from slamgym.scenes.home.colours import Colour
+from slamgym.scenes.home.textures import Image, noise, tinted
 
 Points = NDArray[np.int32]
 
@@ -28,11 +29,11 @@ def canvas(height: int, width: int, colour: Colour) -> Image:
 def aged(rng: np.random.Generator, image: Image) -> Image:
     """Paper grain and uneven fading."""
     size = max(image.shape[:2])
-    field = (0.025 * noise(rng, size, 0.4) + 0.05 * noise(rng, size, 1.7))[: image.shape[0], : image.shape[1], None]
+    field = 0.045 * noise(rng, size, 1.2)[: image.shape[0], : image.shape[1], None]
     return np.clip(image * (1.0 + field), 0, 255).astype(np.uint8)
 
 
-def abstract(rng: np.random.Generator, height: int = 384, width: int = 288) -> Image:
+def abstract(rng: np.random.Generator, height: int = 320, width: int = 240) -> Image:
     """Overlapping discs, bars, triangles and arcs."""
     image = canvas(height, width, random_ink(rng, 190, 250))
     for kind in rng.integers(0, 4, 46).tolist():
@@ -50,7 +51,7 @@ def abstract(rng: np.random.Generator, height: int = 384, width: int = 288) -> I
     return aged(rng, image)
 
 
-def landscape(rng: np.random.Generator, height: int = 320, width: int = 448) -> Image:
+def landscape(rng: np.random.Generator, height: int = 256, width: int = 360) -> Image:
     """Sky, sun, ridges one behind the other, trees and houses in front."""
     fade = np.linspace(0.0, 1.0, height)[:, None, None]
     sky = np.array(random_ink(rng, 110, 200)) * (1 - fade) + np.array([245, 225, 190]) * fade

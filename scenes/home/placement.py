@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,13 +12,14 @@ from slamgym.scenes.home.floorplan import Opening, PlannedRoom, Wall
 from slamgym.scenes.home.furniture.piece import Piece, Top
 from slamgym.types import BoolArray, FloatArray
 
-ROUTE_WIDTH = 0.9
+ROUTE_WIDTH = 0.8
 DOOR_ZONE = 0.9  # metres into the room that stay free behind a doorway
 _HEADROOM = 1.4  # height of the space in front of a piece
 _STANDS = 0.3  # what begins higher hangs, or stands on something else
 _NARROWS_BELOW = 1.3  # what hangs higher does not narrow a route
 _CELL = 0.05
 _TRIES = 6
+_LONG, _SLICES = 0.7, 6
 _TOUCH = 1e-3  # overlaps up to 1 mm count as touching
 _CUT_OFF_M2 = 0.5  # clear floor that furniture may close off from the doors
 _OPEN_SHARE = 0.09  # of the room's area that must be 0.45 m away from everything and joined to the doors
@@ -34,7 +36,23 @@ class Placed:
     @property
     def bounds(self) -> FloatArray:
         """Axis-aligned bounding box (2, 3) in the world."""
-        return self.in_world().bounds
+        if self._askew:
+            return self.in_world().bounds
+        (x0, y0, z0), (x1, y1, z1) = self.piece.bounds
+        return _around([self.point(x0, y0), self.point(x1, y1)], z0 + self.at[2], z1 + self.at[2])
+
+    @property
+    def _askew(self) -> bool:
+        return bool(abs(np.sin(2.0 * self.yaw)) > 1e-6)
+
+    def boxes(self) -> list[FloatArray]:
+        """Axis-aligned boxes (2, 3) in the world that cover the piece: several where it is long and stands askew."""
+        low, high = self.piece.bounds
+        if high[0] - low[0] < _LONG or not self._askew:
+            return [self.bounds]
+        z = low[2] + self.at[2], high[2] + self.at[2]
+        spans = pairwise(np.linspace(low[0], high[0], _SLICES + 1))
+        return [_around([self.point(x, y) for x in ends for y in (low[1], high[1])], *z) for ends in spans]
 
     def in_world(self) -> Piece:
         return self.piece.placed(self.yaw, self.at)
@@ -71,17 +89,15 @@ def overlaps(box: FloatArray, others: Sequence[FloatArray]) -> bool:
 class RoomLayout:
     """The furniture of one room as it fills up. Every `put` either fits and stays, or changes nothing."""
 
-    def __init__(self, planned: PlannedRoom, height: float, rng: np.random.Generator) -> None:
+    def __init__(self, planned: PlannedRoom, height: float) -> None:
         self.planned = planned
         self.height = height
-        self.rng = rng
         self.items: list[Placed] = []
+        self._origin = np.array([planned.room.x_min, planned.room.y_min])
         self._boxes: list[FloatArray] = []
-        self._free: list[FloatArray] = []
+        self._free: list[tuple[Opening, FloatArray]] = []
         self._fronts: list[FloatArray] = []
-        self._doors = [wall.point(o.centre, DOOR_ZONE / 2 + _CELL) for wall, o in self.openings("door")]
-        for wall, opening in self.openings("door"):
-            self.keep_free(wall, opening, DOOR_ZONE)
+        self._approaches = [_approach(wall, o) for wall, o in self.openings("door")]
 
     def openings(self, kind: str) -> list[tuple[Wall, Opening]]:
         """The room's doorways or windows with the walls that they are in."""
@@ -96,25 +112,26 @@ class RoomLayout:
         """Keeps the space in front of an opening free of all that is put later, as deep as given, metres."""
         sides = (opening.centre - opening.width / 2, opening.centre + opening.width / 2)
         corners = [wall.point(s, inward) for s in sides for inward in (0.0, depth)]
-        self._free.append(_around(corners, opening.bottom, opening.top))
+        self._free.append((opening, _around(corners, opening.bottom, opening.top)))
 
-    def put(self, *group: Placed, margin: float = 0.0) -> bool:
+    def put(self, *group: Placed, margin: float = 0.0, before: Opening | None = None) -> bool:
         """Adds pieces that may overlap one another, if all of them fit; `margin` keeps them clear of others, metres.
 
         They stay inside the room, clear of other pieces, of the space in front of these, and of doorways and windows;
-        and the free routes through the room stay open.
+        and the free routes through the room stay open. before: the one opening that they may stand in front of.
         """
-        boxes = [item.bounds for item in group]
+        boxes = [box for item in group for box in item.boxes()]
         grown = [box + np.array([[-margin, -margin, 0.0], [margin, margin, 0.0]]) for box in boxes]
         fronts = [item.front() for item in group if item.piece.front]
         low = [box for box in boxes if box[0, 2] < _STANDS]
+        kept_free = [box for opening, box in self._free if opening is not before]
         if not all(self._inside(box) for box in boxes) or any(
-            overlaps(box, [*self._boxes, *self._free]) for box in grown
+            overlaps(box, [*self._boxes, *kept_free]) for box in grown
         ):
             return False
         if any(overlaps(box, self._fronts) for box in low) or any(overlaps(front, self._boxes) for front in fronts):
             return False
-        if not self._passable([*self._boxes, *boxes]):
+        if not self._passable(boxes):
             return False
         self.lay(*group)
         self._boxes += boxes
@@ -128,6 +145,7 @@ class RoomLayout:
     def against_wall(
         self,
         piece: Piece,
+        rng: np.random.Generator,
         walls: Sequence[int] | None = None,
         z: float = 0.0,
         margin: float = 0.0,
@@ -138,28 +156,19 @@ class RoomLayout:
 
         company: what has to stand with it, such as the chair of a desk.
         """
-        for i in self.rng.permutation(4).tolist() if walls is None else walls:
+        for i in rng.permutation(4).tolist() if walls is None else walls:
             wall = self.planned.walls[i]
-            for s in self._spots(piece, wall.length):
+            for s in _spots(piece, wall.length, rng):
                 item = Placed(piece, wall.yaw, wall.point(s, gap, z))
                 if self.put(item, *company(item), margin=margin):
                     return item
         return None
 
-    def _spots(self, piece: Piece, length: float) -> list[float]:
-        low, high = piece.bounds[:, 0]
-        first, last = 0.02 - low, length - 0.02 - high
-        if last < first:
-            return []
-        ends = [first, last] if self.rng.random() < 0.5 else [last, first]
-        anywhere = self.rng.uniform(first, last, _TRIES).tolist()
-        return [float(s) for s in (anywhere if piece.bounds[0, 2] < 0.0 else ends + anywhere)]
-
-    def on_top(self, host: Placed, top: Top, piece: Piece) -> bool:
+    def on_top(self, host: Placed, top: Top, piece: Piece, rng: np.random.Generator) -> bool:
         """Puts a small piece somewhere on a top of another, turned a little."""
         for _ in range(_TRIES):
-            x, y = self.rng.uniform(*top.x), self.rng.uniform(*top.y)
-            item = Placed(piece, host.yaw + float(self.rng.uniform(-0.4, 0.4)), host.point(x, y, top.z + 0.0005))
+            x, y = rng.uniform(*top.x), rng.uniform(*top.y)
+            item = Placed(piece, host.yaw + float(rng.uniform(-0.4, 0.4)), host.point(x, y, top.z + 0.0005))
             if self.put(item, margin=0.01):
                 return True
         return False
@@ -175,17 +184,37 @@ class RoomLayout:
 
     def _passable(self, boxes: list[FloatArray]) -> bool:
         """Whether free space, half a route's width away from everything, joins all doors and is large enough."""
-        obstacles = [box for box in boxes if box[0, 2] < _NARROWS_BELOW]
-        clear = _clear_cells(self.planned, obstacles)
-        labels, _ = ndimage.label(clear)
-        room = self.planned.room
-        cells = [tuple(np.floor((np.array(p[:2]) - (room.x_min, room.y_min)) / _CELL).astype(int)) for p in self._doors]
-        at_doors = {int(labels[cell]) for cell in cells}
-        if len(at_doors) != 1 or 0 in at_doors:
-            return False
-        joined = int((labels == at_doors.pop()).sum()) * _CELL**2
+        if not any(_narrows(box) for box in boxes):
+            return True
+        clear = _clear_cells(self.planned, [box for box in (*self._boxes, *boxes) if _narrows(box)])
+        labels, number = ndimage.label(clear)
+        at_all_doors = set(range(1, number + 1))
+        for box in self._approaches:
+            (x0, y0), (x1, y1) = np.floor((box[:, :2] - self._origin) / _CELL).astype(int)
+            at_all_doors &= set(np.unique(labels[x0 : x1 + 1, y0 : y1 + 1]).tolist())
+        joined = max((int((labels == label).sum()) for label in at_all_doors), default=0) * _CELL**2
         cut_off = int(clear.sum()) * _CELL**2 - joined
         return joined >= _OPEN_SHARE * self.area and cut_off <= _CUT_OFF_M2
+
+
+def _spots(piece: Piece, length: float, rng: np.random.Generator) -> list[float]:
+    low, high = piece.bounds[:, 0]
+    first, last = 0.02 - low, length - 0.02 - high
+    if last < first:
+        return []
+    ends = [first, last] if rng.random() < 0.5 else [last, first]
+    anywhere = rng.uniform(first, last, _TRIES).tolist()
+    return [float(s) for s in (anywhere if piece.bounds[0, 2] < 0.0 else ends + anywhere)]
+
+
+def _approach(wall: Wall, opening: Opening) -> FloatArray:
+    """Where one stands before stepping through a doorway; behind an ajar door no route is wide enough there."""
+    corners = [wall.point(opening.centre + s, inward) for s in (-0.35, 0.35) for inward in (0.35, 0.7)]
+    return _around(corners, 0.0, _HEADROOM)
+
+
+def _narrows(box: FloatArray) -> bool:
+    return bool(box[0, 2] < _NARROWS_BELOW)
 
 
 def _clear_cells(planned: PlannedRoom, obstacles: list[FloatArray]) -> BoolArray:

@@ -1,11 +1,11 @@
-"""Printed things made by code: book spines, labels, a clock, a screen, and the view from a window."""
+"""Printed things made by code: book spines, labels, a clock, a screen, notes, a mirror."""
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from slamgym.scenes.home.pictures import DYES, FONTS, WORDS, aged, canvas, figure, landscape, random_ink, text_lines
-from slamgym.scenes.home.textures import Image, noise, tinted
+from slamgym.scenes.home.textures import Image
 
 
 def _cloth(rng: np.random.Generator) -> NDArray[np.float64]:
@@ -63,38 +63,6 @@ def labels(rng: np.random.Generator, size: int = 512) -> Image:
     return image
 
 
-def outside(rng: np.random.Generator, height: int = 384, width: int = 512) -> Image:
-    """A bright street as seen through a window: clouds, house fronts, trees, a lawn."""
-    clouds = np.clip(noise(rng, 512, 1.7)[:height, :width, None], 0.0, 1.5) / 1.5
-    image = (np.array([165, 200, 240]) * (1 - clouds) + 250 * clouds).astype(np.uint8)
-    x = 0
-    while x < width:
-        wide, top = int(rng.integers(70, 130)), int(rng.integers(height // 4, height // 2))
-        _house_front(rng, image[top : int(0.78 * height), x : x + wide])
-        x += wide + int(rng.integers(0, 40))
-    image[int(0.76 * height) :] = tinted((140, 175, 105), 0.08 * noise(rng, 512, 1.0))[: height - int(0.76 * height)]
-    for x in rng.integers(0, width, 7).tolist():
-        _crown(rng, image, x, int(rng.integers(int(0.5 * height), int(0.72 * height))))
-    return image
-
-
-def _house_front(rng: np.random.Generator, front: Image) -> None:
-    front[:] = random_ink(rng, 150, 225)
-    height, width = front.shape[:2]
-    front[:10] = random_ink(rng, 90, 150)
-    for y in range(22, height - 24, 36):
-        for x in range(10, width - 16, 26):
-            front[y : y + 22, x : x + 14] = 240
-            front[y + 2 : y + 20, x + 2 : x + 12] = random_ink(rng, 60, 140)
-
-
-def _crown(rng: np.random.Generator, image: Image, x: int, y: int) -> None:
-    cv2.line(image, (x, y), (x, int(0.8 * image.shape[0])), (90, 70, 55), 6)
-    for dx, dy in rng.normal(0.0, 17.0, (34, 2)).astype(int).tolist():
-        green = random_ink(rng, 70, 120)
-        cv2.circle(image, (x + dx, y + dy), int(rng.integers(5, 13)), (green[0], green[1] + 45, 60), -1, cv2.LINE_AA)
-
-
 def clock_face(rng: np.random.Generator, size: int = 192) -> Image:
     """Twelve numerals and two hands."""
     image = canvas(size, size, (246, 243, 235))
@@ -119,3 +87,48 @@ def screen(rng: np.random.Generator, height: int = 256, width: int = 400) -> Ima
         cv2.rectangle(image, (x, y), (x + w, y + 10), random_ink(rng, 40, 160), -1)
         text_lines(rng, image, y + 16, y + h, x + 6, x + w - 6)
     return image
+
+
+NOTES = (3, 4)
+"""Rows and columns of sheets in `notes`."""
+
+
+def notes(rng: np.random.Generator, size: int = 384) -> Image:
+    """An atlas of NOTES sheets of paper: a calendar page, letters, children's drawings, coloured slips."""
+    image = canvas(size, size, (238, 236, 228))
+    y = np.linspace(0, size, NOTES[0] + 1).astype(int)
+    x = np.linspace(0, size, NOTES[1] + 1).astype(int)
+    for row, column in np.ndindex(NOTES):
+        cell = image[y[row] : y[row + 1], x[column] : x[column + 1]]
+        (_calendar, _letter, _drawing)[row](rng, cell)
+    return image
+
+
+def _calendar(rng: np.random.Generator, page: Image) -> None:
+    height, width = page.shape[:2]
+    page[: height // 2] = cv2.resize(landscape(rng, 160, 224), (width, height // 2), interpolation=cv2.INTER_AREA)
+    step = width // 8
+    for y in range(height // 2 + 6, height - 8, step - 3):
+        for x in range(5, width - step, step):
+            cv2.rectangle(page, (x, y), (x + step - 5, y + step - 8), random_ink(rng, 40, 150), -1)
+
+
+def _letter(rng: np.random.Generator, page: Image) -> None:
+    page[:] = random_ink(rng, 205, 255)
+    text_lines(rng, page, 10, page.shape[0] - 8, 8, page.shape[1] - 8)
+
+
+def _drawing(rng: np.random.Generator, page: Image) -> None:
+    for _ in range(7):
+        spot = int(rng.integers(page.shape[1])), int(rng.integers(page.shape[0]))
+        figure(rng, page, spot, int(rng.integers(8, 26)), [random_ink(rng, 60, 220)])
+
+
+def reflection(rng: np.random.Generator, size: int = 256) -> Image:
+    """What a dim mirror shows: a blurred room, lighter above."""
+    walls = np.linspace(150, 84, size)[:, None, None] * np.array([1.0, 0.97, 0.93])
+    image = np.repeat(walls, size, axis=1).astype(np.uint8)
+    for x, y in rng.integers(0, size, (9, 2)).tolist():
+        w, h = rng.integers(size // 10, size // 3, 2).tolist()
+        cv2.rectangle(image, (x, y), (x + w, y + h), random_ink(rng, 50, 170), -1)
+    return np.asarray(cv2.GaussianBlur(image, (0, 0), size / 28), dtype=np.uint8)

@@ -20,15 +20,17 @@ from slamgym.scenes.home.floorplan import (
 )
 from slamgym.scenes.home.furniture.piece import Component, Piece
 from slamgym.scenes.home.palette import Finish, Palette
-from slamgym.scenes.home.solids import Mesh, border, box, merge, picture, placed, quads
+from slamgym.scenes.home.solids import Mesh, bevelled, border, box, merge, picture, placed, quads
+from slamgym.scenes.house import Window
 
 _PANE_DEPTH = 0.17  # of the window pane behind the inner face of the wall
+_DAYLIGHT_DEPTH = 0.1  # of where daylight begins, in front of the frames
 _SKIRTING = (0.012, 0.08)  # thickness, height
 
 
-def shell_pieces(plan: FloorPlan, palette: Palette, rng: np.random.Generator) -> Iterator[Piece]:
-    """All pieces of the shell, in world coordinates."""
-    papers = _wall_finishes(plan, palette, rng)
+def shell_pieces(plan: FloorPlan, palette: Palette, rng: np.random.Generator, richness: float = 1.0) -> Iterator[Piece]:
+    """All pieces of the shell, in world coordinates; richness: of wallpapers, 1 as in most homes."""
+    papers = _wall_finishes(plan, palette, rng, richness)
     for planned, paper in zip(plan.rooms, papers, strict=True):
         yield from _floor_and_ceiling(planned, plan.height, palette)
         around = 0.0
@@ -40,16 +42,44 @@ def shell_pieces(plan: FloorPlan, palette: Palette, rng: np.random.Generator) ->
     yield from _facade(plan, palette)
 
 
-def _wall_finishes(plan: FloorPlan, palette: Palette, rng: np.random.Generator) -> list[Finish]:
-    """Tiles in the bathroom, paper in the living room and first bedroom, plain paint elsewhere."""
+def daylight(plan: FloorPlan) -> Iterator[Window]:
+    """The clear panes of all windows as sources of light, a little inside the frames."""
+    for planned in plan.rooms:
+        for wall in planned.walls:
+            c, s = float(np.cos(wall.yaw)), float(np.sin(wall.yaw))
+            for o in wall.openings:
+                if o.kind == "window":
+                    middle = wall.point(o.centre, -_DAYLIGHT_DEPTH, (o.bottom + o.top) / 2)
+                    half = o.width / 2 - 0.08
+                    yield Window(middle, (0.0, 0.0, (o.top - o.bottom) / 2 - 0.08), (half * c, half * s, 0.0))
+
+
+def _wall_finishes(plan: FloorPlan, palette: Palette, rng: np.random.Generator, richness: float) -> list[Finish]:
+    """Tiles in bathrooms; paper in some rooms, in more the richer a house is; plain paint elsewhere."""
     papers = [palette.papered_walls[i] for i in rng.permutation(len(palette.papered_walls))]
-    fixed = {"bathroom": palette.wall_tiles, "living_room": papers[0], "bedroom": papers[1]}
-    plain = [palette.plain_walls[i % len(palette.plain_walls)] for i in range(len(plan.rooms))]
-    return [fixed.get(planned.room.name, paint) for planned, paint in zip(plan.rooms, plain, strict=True)]
+    plain = [palette.plain_walls[i] for i in rng.permutation(len(palette.plain_walls))]
+    share = rng.random(len(plan.rooms))
+    finishes = []
+    for i, planned in enumerate(plan.rooms):
+        likely = _PAPERED.get(planned.room.kind, 0.15) * richness + 2.0 * max(richness - 1.5, 0.0)
+        papered = richness >= 0.25 and share[i] < likely
+        finishes.append(papers[i % len(papers)] if papered else plain[i % len(plain)])
+    return [
+        palette.wall_tiles if planned.room.kind == "bathroom" else finish
+        for planned, finish in zip(plan.rooms, finishes, strict=True)
+    ]
+
+
+_PAPERED = {"living_room": 0.5, "bedroom": 0.6, "nursery": 0.5, "dining_room": 0.4, "kitchen": 0.0}
 
 
 def _floor_finish(kind: str, palette: Palette) -> Finish:
-    floors = {"kitchen": palette.kitchen_floor, "bathroom": palette.bath_floor, "bedroom": palette.carpet_floor}
+    floors = {
+        "kitchen": palette.kitchen_floor,
+        "bathroom": palette.bath_floor,
+        "bedroom": palette.carpet_floor,
+        "nursery": palette.carpet_floor,
+    }
     return floors.get(kind, palette.wood_floor)
 
 
@@ -115,7 +145,7 @@ def _window(wall: Wall, opening: Opening, palette: Palette, rng: np.random.Gener
     lining = border(x, (-OUTER_WALL + 0.01, 0.004), z, 0.02)
     casement = border(inner, (-_PANE_DEPTH, -_PANE_DEPTH + 0.05), (z[0] + 0.02, z[1] - 0.02), 0.06)
     mullion = box((-0.03, 0.03), (-_PANE_DEPTH, -_PANE_DEPTH + 0.045), (z[0] + 0.08, z[1] - 0.08))
-    sill = box((-width / 2 - 0.05, width / 2 + 0.05), (-_PANE_DEPTH + 0.05, 0.06), (z[0] - 0.03, z[0] + 0.021))
+    sill = bevelled((-width / 2 - 0.05, width / 2 + 0.05), (-_PANE_DEPTH + 0.05, 0.06), (z[0] - 0.03, z[0] + 0.021))
     view = palette.views[rng.integers(len(palette.views))]
     pane = picture(width, z, -_PANE_DEPTH + 0.01)
     outlook = Mesh(pane.vertices, pane.faces, pane.uv * (0.5, 0.8) + rng.uniform(0.0, (0.5, 0.2)))

@@ -6,7 +6,6 @@ per vertex.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -87,6 +86,30 @@ def box(x: Interval, y: Interval, z: Interval) -> Mesh:
     return quads(corners[_BOX_FACES])
 
 
+def _bevel_strips() -> IntArray:
+    """The quads (12, 4) between the inset faces of a bevelled box; vertex 3 * corner + axis is on that axis' face."""
+    loops = [(axis // 2, loop.tolist()) for axis, loop in enumerate(_BOX_FACES)]
+    side = {(p, q): axis for axis, loop in loops for p, q in zip(loop, loop[1:] + loop[:1], strict=True)}
+    return np.array(
+        [(3 * q + a, 3 * p + a, 3 * p + side[q, p], 3 * q + side[q, p]) for (p, q), a in side.items() if p < q]
+    )
+
+
+_BEVEL_QUADS = np.concatenate([3 * _BOX_FACES + np.array([[0], [0], [1], [1], [2], [2]]), _bevel_strips()])
+_BEVEL_TIPS = np.array([[0, 1, 2] if i.bit_count() % 2 else [0, 2, 1] for i in range(8)]) + 3 * np.arange(8)[:, None]
+
+
+def bevelled(x: Interval, y: Interval, z: Interval, edge: float = 0.006) -> Mesh:
+    """A closed box whose edges are cut off, `edge` metres of each face."""
+    centre, half = (np.array([[x[k], y[k], z[k]] for k in (0, 1)]).T @ ((0.5, -0.5), (0.5, 0.5))).T
+    edge = min(edge, 0.45 * float(half.min()))
+    signs = np.array([(2 * (i & 1) - 1, (i & 2) - 1, (i >> 1 & 2) - 1) for i in range(8)])
+    vertices = centre + (signs[:, None, :] * (half - edge * (1.0 - np.eye(3)))).reshape(-1, 3)
+    tips = vertices[_BEVEL_TIPS].reshape(-1, 3)
+    corners = Mesh(tips, np.arange(24).reshape(-1, 3), tips[:, :2])
+    return merge([quads(vertices[_BEVEL_QUADS]), corners])
+
+
 def border(x: Interval, y: Interval, z: Interval, bar: float) -> Mesh:
     """Four bars, `bar` wide, inside the edges of an upright rectangle: a frame."""
     return merge(
@@ -123,20 +146,29 @@ def lathe(
     angle = np.linspace(0.0, 2.0 * np.pi, sides + 1)
     ring = np.stack([_signed_power(np.cos(angle), roundness), _signed_power(np.sin(angle), roundness)], axis=1)
     ring[-1] = ring[0]  # exactly the first again
-    return placed(merge(_band(ring, a, b) for a, b in pairwise(profile)), at=at)
+    outline = np.array(profile, dtype=np.float64)
+    ends = np.stack([outline[:-1], outline[1:]], axis=1)  # of the bands (M, 2, 2)
+    radius, height = ends[..., :1, None], np.broadcast_to(ends[..., 1:, None], (len(ends), 2, sides + 1, 1))
+    vertices = np.concatenate([radius * ring, height], axis=-1).reshape(-1, 3) + np.asarray(at, dtype=np.float64)
+    return Mesh(vertices, _band_faces(ends[..., 0], sides), _band_uv(ends, sides).reshape(-1, 2))
 
 
-def _band(ring: FloatArray, a: Interval, b: Interval) -> Mesh:
-    n = len(ring) - 1
-    vertices = np.concatenate([np.column_stack([ring * r, np.full(n + 1, z)]) for r, z in (a, b)])
-    around = np.linspace(0.0, 2.0 * np.pi * max(a[0], b[0]), n + 1)
-    slope = float(np.hypot(b[0] - a[0], b[1] - a[1]))
-    uv = np.concatenate([np.column_stack([around, np.full(n + 1, v)]) for v in (a[1], a[1] + slope)])
-    i = np.arange(n)
-    lower = np.stack([i, i + 1, i + n + 2], axis=1)
-    upper = np.stack([i, i + n + 2, i + n + 1], axis=1)
-    faces = np.concatenate([lower] * (a[0] > 0) + [upper] * (b[0] > 0))
-    return Mesh(vertices, faces, uv)
+def _band_uv(ends: FloatArray, sides: int) -> FloatArray:
+    """Metres around and along the outline, (M, 2, sides + 1, 2)."""
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    along = ends[:, :1, 1] + np.stack([np.zeros_like(length), length], axis=1)
+    around = 2.0 * np.pi * ends[..., 0].max(axis=1)[:, None, None] * np.linspace(0.0, 1.0, sides + 1)
+    return np.stack(np.broadcast_arrays(around, along[..., None]), axis=-1)
+
+
+def _band_faces(radii: FloatArray, sides: int) -> IntArray:
+    """Two triangles a side; where a band (M, 2) starts or ends on the axis, one."""
+    i = np.arange(sides)
+    lower = np.stack([i, i + 1, i + sides + 2], axis=1)
+    upper = np.stack([i, i + sides + 2, i + sides + 1], axis=1)
+    first = 2 * (sides + 1) * np.arange(len(radii))[:, None, None]
+    kept = [(first + corners)[radii[:, end] > 0.0].reshape(-1, 3) for end, corners in ((0, lower), (1, upper))]
+    return np.concatenate(kept)
 
 
 def cylinder(radius: float, z: Interval, at: Interval = (0.0, 0.0), sides: int = 12) -> Mesh:

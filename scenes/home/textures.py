@@ -1,21 +1,21 @@
-"""Surface textures made by code: wood, tiles, fabric, wallpaper, plaster, marble, leaves.
+"""Surface textures made by code: wood, tiles, fabric, plaster, marble, leaves.
 
 All functions draw from the given generator, return uint8 (size, size, 3) sRGB, and tile without a seam. Each varies at
 several scales (blemishes, tone of single planks or tiles, grain), for small repeated patterns of high contrast would
 make every place look like every other to a feature matcher.
 """
 
-from collections.abc import Callable
+from functools import cache
 from itertools import pairwise
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy import fft
 
+from slamgym.scenes.home.colours import Colour
 from slamgym.types import FloatArray
 
 Image = NDArray[np.uint8]
-Colour = tuple[int, int, int]
 
 
 def noise(rng: np.random.Generator, size: int, roughness: float = 1.6, stretch: float = 1.0) -> FloatArray:
@@ -23,17 +23,30 @@ def noise(rng: np.random.Generator, size: int, roughness: float = 1.6, stretch: 
 
     stretch: how much longer its blotches are along u than along v.
     """
+    spectrum = fft.rfft2(rng.standard_normal((size, size), dtype=np.float32)) * _falloff(size, roughness, stretch)
+    field = fft.irfft2(spectrum, (size, size)).astype(np.float64)
+    return np.asarray(field / field.std())
+
+
+@cache
+def _falloff(size: int, roughness: float, stretch: float) -> NDArray[np.float32]:
+    """The amplitudes (size, size // 2 + 1) of `noise`; none at frequency 0."""
     frequency = np.hypot(np.fft.fftfreq(size)[:, None], np.fft.rfftfreq(size) * stretch)
-    spectrum = np.fft.rfft2(rng.standard_normal((size, size))) / (frequency + 1.0 / size) ** roughness
-    spectrum[0, 0] = 0.0
-    field = np.fft.irfft2(spectrum, (size, size))
-    return np.asarray(field / field.std(), dtype=np.float64)
+    amplitude = (frequency + 1.0 / size) ** -roughness
+    amplitude[0, 0] = 0.0
+    return np.asarray(amplitude, dtype=np.float32)
 
 
 def tinted(colour: Colour, tone: FloatArray) -> Image:
     """The colour times (1 + tone), tone (H, W) or (H, W, 3)."""
     tone = tone if tone.ndim == 3 else tone[..., None]
     return np.clip(np.array(colour) * (1.0 + tone) + 0.5, 0, 255).astype(np.uint8)
+
+
+def softened(image: Image, strength: float) -> Image:
+    """The image with its deviation from its mean colour times `strength`: 0 plain, 1 as it is, 2 bold."""
+    mean = image.reshape(-1, 3).mean(axis=0)
+    return np.asarray(np.clip(mean + strength * (image - mean) + 0.5, 0, 255), dtype=np.uint8)
 
 
 def plaster(rng: np.random.Generator, colour: Colour, size: int = 512, contrast: float = 0.012) -> Image:
@@ -45,7 +58,7 @@ def woodchip(rng: np.random.Generator, colour: Colour, size: int = 512) -> Image
     """Painted ingrain wallpaper: chips of a few millimetres that stand out and throw a small shadow."""
     chips = np.clip(noise(rng, size, 0.4) - 0.9, 0.0, 1.5)
     relief = chips - np.roll(chips, (2, 1), axis=(0, 1))
-    return tinted(colour, 0.22 * relief + 0.015 * noise(rng, size, 0.5) + 0.018 * noise(rng, size, 1.8))
+    return tinted(colour, 0.15 * relief + 0.015 * noise(rng, size, 0.5) + 0.018 * noise(rng, size, 1.8))
 
 
 def _grain(rng: np.random.Generator, size: int) -> FloatArray:
@@ -127,7 +140,7 @@ def marble(rng: np.random.Generator, colour: Colour, size: int = 256) -> Image:
 def fabric(rng: np.random.Generator, colour: Colour, size: int = 256) -> Image:
     """Woven cloth: threads of uneven tone, a little worn."""
     threads = rng.normal(0.0, 0.05, size)[:, None] + rng.normal(0.0, 0.05, size)[None, :]
-    return tinted(colour, threads + 0.06 * noise(rng, size, 0.5) + 0.09 * noise(rng, size, 1.4))
+    return tinted(colour, threads + 0.07 * noise(rng, size, 0.5) + 0.05 * noise(rng, size, 1.4))
 
 
 def carpet(rng: np.random.Generator, colour: Colour, size: int = 512) -> Image:
@@ -149,53 +162,3 @@ def leaves(rng: np.random.Generator, colour: Colour = (92, 132, 74), size: int =
     """A leaf surface: blotches and a paler rib along u."""
     rib = np.exp(-((np.linspace(-1, 1, size) / 0.06) ** 2))[:, None]
     return tinted(colour, 0.1 * noise(rng, size, 1.4) + 0.06 * noise(rng, size, 0.6) + 0.35 * rib)
-
-
-def striped_wallpaper(rng: np.random.Generator, colour: Colour, size: int = 512) -> Image:
-    """Upright stripes of uneven width and tone on rough paper."""
-    edges = np.sort(rng.choice(size, 18, replace=False))
-    tone = rng.normal(0.0, 0.035, len(edges) + 1)
-    tone[-1] = tone[0]
-    stripes = tone[np.searchsorted(edges, np.arange(size))][None, :]
-    return tinted(colour, stripes + 0.035 * noise(rng, size, 0.6) + 0.03 * noise(rng, size, 1.6))
-
-
-def floral_wallpaper(rng: np.random.Generator, colour: Colour, accent: Colour, size: int = 512) -> Image:
-    """Flowers on stems, no two alike, scattered over pale paper."""
-    image = plaster(rng, colour, size, 0.03)
-    cells = 6
-    for row, column in np.ndindex(cells, cells):
-        centre = (np.array([column + 0.5 * (row % 2), row]) + rng.uniform(0.2, 0.8, 2)) * size / cells
-        _wrapped(image, _flower(rng, centre, rng.uniform(0.035, 0.06) * size, colour, accent))
-    return image
-
-
-def _flower(
-    rng: np.random.Generator, centre: FloatArray, radius: float, paper: Colour, ink: Colour
-) -> Callable[[Image, FloatArray], None]:
-    tones = [tuple(float(p + s * (i - p)) for p, i in zip(paper, ink, strict=True)) for s in rng.uniform(0.25, 0.6, 3)]
-    petals, turn = int(rng.integers(4, 8)), rng.uniform(0.0, 2.0 * np.pi)
-    bend = rng.uniform(-1.0, 1.0, 2) * radius
-
-    def draw(image: Image, offset: FloatArray) -> None:
-        at = centre + offset
-        stem = (at + np.array([(0.0, 0.0), (bend[0], radius), (bend[1], 2.2 * radius)])).round().astype(np.int32)
-        cv2.polylines(image, [stem], False, tones[0], 2, cv2.LINE_AA)
-        for angle in turn + np.arange(petals) * 2.0 * np.pi / petals:
-            petal = at + 0.6 * radius * np.array([np.cos(angle), np.sin(angle)])
-            axes = (max(int(0.45 * radius), 1), max(int(0.25 * radius), 1))
-            cv2.ellipse(image, _pixel(petal), axes, float(np.degrees(angle)), 0, 360, tones[1], -1, cv2.LINE_AA)
-        cv2.circle(image, _pixel(at), max(int(0.25 * radius), 1), tones[2], -1, cv2.LINE_AA)
-
-    return draw
-
-
-def _pixel(point: FloatArray) -> tuple[int, int]:
-    return round(float(point[0])), round(float(point[1]))
-
-
-def _wrapped(image: Image, draw: Callable[[Image, FloatArray], None]) -> None:
-    """Draws at all places where the tiled image shows the shape."""
-    size = image.shape[0]
-    for row, column in np.ndindex(3, 3):
-        draw(image, np.array([column - 1.0, row - 1.0]) * size)

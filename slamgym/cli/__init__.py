@@ -14,13 +14,14 @@ EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130
 EXIT_CLOSED_PIPE = 141
 
-PAIRS_FLAG = "--slam-options"
+PAIRS_FLAGS = ("--slam-options", "--scene-options")
 
 COMMANDS = {
     "run": "slamgym.cli.run:Run",
     "record": "slamgym.cli.record:Record",
     "replay": "slamgym.cli.replay:ReplayCommand",
     "eval": "slamgym.cli.eval:Eval",
+    "scene": "slamgym.cli.scene:Scene",
     "vocab": "slamgym.cli.vocab:Vocab",
 }
 """Name -> the options of a command, a class whose `__call__` carries it out."""
@@ -44,9 +45,10 @@ def main(arguments: list[str] | None = None) -> None:
 
 def _refuse_repeated(arguments: list[str]) -> None:
     """Of two lists of options the parser would take the last one and forget the other."""
-    times = sum(word.partition("=")[0].replace("_", "-") == PAIRS_FLAG for word in arguments)
-    if times > 1:
-        raise ConfigError(f"{PAIRS_FLAG}: expected it once, got it {times} times; give all pairs after one")
+    flags = [word.partition("=")[0].replace("_", "-") for word in arguments]
+    for flag in PAIRS_FLAGS:
+        if (times := flags.count(flag)) > 1:
+            raise ConfigError(f"{flag}: expected it once, got it {times} times; give all pairs after one")
 
 
 def _parsed(arguments: list[str]) -> Callable[[], None]:

@@ -11,11 +11,12 @@ import tyro
 from slamgym import MAX_EPISODE_STEPS
 from slamgym.agents import AGENTS, Agent
 from slamgym.cli.options import option_group
-from slamgym.cli.terminal import progress_bar
+from slamgym.cli.terminal import light_progress, progress_bar
 from slamgym.errors import ConfigError, unknown_word
 from slamgym.files import check_free
 from slamgym.params import DriveParams
 from slamgym.rollout import Episode, RobotEnv
+from slamgym.stage import load_stage
 
 DriveOptions = option_group(DriveParams)
 
@@ -45,6 +46,8 @@ class DriveCommand:
         try:
             with progress_bar("{task.completed:.1f} m") as progress:
                 task = progress.add_task("loading", total=None)
+                # Kept in memory: the reset finds it there.
+                load_stage(DriveParams.checked(vars(self.drive)), light_progress(progress, task))
                 return run(
                     env,
                     AGENTS[self.agent](),

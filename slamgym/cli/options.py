@@ -1,5 +1,6 @@
 """Options of the command line, made from groups of parameters."""
 
+from collections.abc import Collection
 from dataclasses import field, make_dataclass
 from typing import Annotated, Any, Literal, get_args, get_origin
 
@@ -20,14 +21,16 @@ def _option(name: str, info: FieldInfo) -> tuple[str, Any, Any]:
     shown: Any = str(default)
     if name == "camera":
         shown = "default"
-    elif name == "slam_options":
+    elif isinstance(default, dict):
         annotation, shown, choices = dict[str, str], default, ("NAME VALUE",)
     elif default is None:
         annotation, shown = str | None, None
-    help_text = tyro.conf.arg(help=info.description, metavar="|".join(choices))
+    help_text = tyro.conf.arg(help=info.description, metavar="|".join(map(str, choices)))
     return name, Annotated[annotation, help_text], field(default_factory=lambda: shown)
 
 
-def option_group(params: type[Params]) -> Any:
-    options = [_option(name, info) for name, info in params.model_fields.items()]
+def option_group(params: type[Params], names: Collection[str] | None = None) -> Any:
+    """A class of options for the parameters of these names; None: for all."""
+    fields = params.model_fields.items()
+    options = [_option(name, info) for name, info in fields if names is None or name in names]
     return make_dataclass(params.__name__, options, namespace={"__doc__": params.__doc__}, kw_only=True)

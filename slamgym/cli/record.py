@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from slamgym.cli.drive import DriveCommand
-from slamgym.cli.terminal import printing, results, say
+from slamgym.cli.terminal import printing, results, say, told_warnings
 from slamgym.recording import record_drive
 
 
@@ -15,10 +15,11 @@ class Record(DriveCommand):
     """
 
     def __call__(self) -> None:
-        episode = self.driven(
-            "HomeRobot-v0",
-            {},
-            lambda env, agent, on_step: record_drive(env, agent, self.seed, self.out, on_step),
-        )
+        with told_warnings():
+            episode = self.driven(
+                "HomeRobot-v0",
+                {},
+                lambda env, agent, on_step: record_drive(env, agent, self.seed, self.out, on_step),
+            )
         with printing():
             say(results, f"{len(episode.steps)} frames, {episode.summary['distance_m']:.1f} m: {self.out}")

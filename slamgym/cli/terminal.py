@@ -3,22 +3,24 @@
 import os
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.status import Status
 from rich.table import Table
 from rich.text import Text
 
-from slamgym.errors import OutputError, TrajectoryWarning
+from slamgym.errors import OutputError, SceneWarning, TrajectoryWarning
 from slamgym.eval.plots.names import printable
 
 results = Console()
 notes = Console(stderr=True)
+
+TOLD = (TrajectoryWarning, SceneWarning)
 
 WIDTH = 100
 """Columns that a table may take; a narrower terminal breaks its lines, but no figure is cut."""
@@ -60,13 +62,14 @@ def working(text: str) -> Status:
 
 @contextmanager
 def told_warnings(about: Path | None = None) -> Iterator[None]:
-    """Say warnings about trajectories in one line each; others stay as they are."""
+    """Say warnings about trajectories and scenes in one line each; others stay as they are."""
     with warnings.catch_warnings():
-        warnings.simplefilter("always", TrajectoryWarning)
+        for told in TOLD:
+            warnings.simplefilter("always", told)
         show = warnings.showwarning
 
         def say_or_show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-            if issubclass(category, TrajectoryWarning):
+            if issubclass(category, TOLD):
                 say(notes, f"slamgym: warning: {f'{about}: ' if about else ''}{message}", style="yellow")
             else:
                 show(message, category, *where, **more)
@@ -86,3 +89,12 @@ def progress_bar(done: str) -> Progress:
         console=notes,
         transient=True,
     )
+
+
+def light_progress(progress: Progress, task: TaskID) -> Callable[[float], None]:
+    """What shows, on the task's bar, the share of a house's light that is baked."""
+
+    def show(share: float) -> None:
+        progress.update(task, description="baking light, %", completed=100 * share, total=100)
+
+    return show

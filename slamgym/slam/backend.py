@@ -2,15 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
-from importlib.metadata import entry_points
-from typing import Any, ClassVar, Protocol, cast
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
 from slamgym.camera import PinholeCamera
 from slamgym.checked_params import Params
 from slamgym.errors import ConfigError, unknown_word
+from slamgym.plugins import load_class, named_targets
 from slamgym.types import Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
 
@@ -94,30 +93,16 @@ def backend_target(name: str) -> str:
 
     Raises ConfigError.
     """
-    if name in BACKENDS or ":" in name:
-        return BACKENDS.get(name, name)
-    installed = {entry.name: entry.value for entry in entry_points(group=ENTRY_POINTS)}
-    if name not in installed:
-        raise ConfigError(unknown_word("slam backend", name, {*BACKENDS, *installed}))
-    return installed[name]
+    targets = named_targets(BACKENDS, ENTRY_POINTS)
+    if name not in targets and ":" not in name:
+        raise ConfigError(unknown_word("slam backend", name, targets))
+    return targets.get(name, name)
 
 
 def load_backend(name: str) -> type[Backend]:
     """The class that a name stands for, see `backend_target`; raises ConfigError."""
-    module, _, attribute = backend_target(name).partition(":")
-    try:
-        backend = getattr(import_module(module), attribute)
-    except Exception as error:  # the module is the user's, and may fail in any way
-        why = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise ConfigError(f"slam backend {name!r}: expected an importable 'module:class', got {why}") from error
-    if missing := [part for part in PARTS if not hasattr(backend, part)]:
-        raise ConfigError(f"slam backend {name!r}: expected a class as slamgym.slam.backend.Backend, without {missing}")
-    if not (isinstance(backend.Options, type) and issubclass(backend.Options, SlamOptions)):
-        raise ConfigError(
-            f"slam backend {name!r}: expected Options derived from slamgym.slam.backend.SlamOptions, got "
-            f"{backend.Options!r}; derive it from that, which is a pydantic model"
-        )
-    return cast(type[Backend], backend)
+    what = f"slam backend {name!r}"
+    return load_class(what, backend_target(name), PARTS, "slamgym.slam.backend.Backend", SlamOptions)
 
 
 def check_config(name: str, config: SlamConfig) -> type[Backend]:

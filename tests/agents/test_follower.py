@@ -1,5 +1,3 @@
-from math import cos, sin
-
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
@@ -9,33 +7,8 @@ from slamgym.agents.path import Path, resample
 from slamgym.agents.planner import plan_path
 
 FPS = 30
-SUBSTEP = 1 / 240
-INFO = {"action_scale": (0.2, 0.8)}
-
-
-def approach(value, target, step):
-    return value + np.clip(target - value, -step, step)
-
-
-def drive(path, agent, speed, turning_radius_m=0.25):
-    """x, y, speed and progress of each frame of a differential drive with 1 m/s^2 and 6 rad/s^2."""
-    (x, y), yaw = path.xy[0], path.heading_at(0.0)
-    v = w = s = 0.0
-    info = {"action_scale": (speed, speed / turning_radius_m)}
-    frames = [(x, y, v, s)]
-    for _ in range(int(3 * FPS * path.length_m / speed) + 10 * FPS):
-        forward, turn = agent.act({"waypoints": path.waypoints(s, x, y, yaw)}, info)
-        for _ in range(round(1 / FPS / SUBSTEP)):
-            v = approach(v, forward * speed, 1.0 * SUBSTEP)
-            w = approach(w, turn * speed / turning_radius_m, 6.0 * SUBSTEP)
-            x += v * cos(yaw + w * SUBSTEP / 2) * SUBSTEP
-            y += v * sin(yaw + w * SUBSTEP / 2) * SUBSTEP
-            yaw += w * SUBSTEP
-        s = path.project((x, y), s)
-        frames.append((x, y, v, s))
-        if s >= path.length_m - 0.05:
-            return np.array(frames)
-    pytest.fail(f"stuck at {s:.2f} of {path.length_m:.2f} m")
+INFO = {"action_scale": (0.2, 0.8), "stamp_ns": 0, "robot": (0.0, 0.0, 0.0), "progress_m": 0.0, "goal_m": 1.0}
+SLAM = {"state": "ok", "tracked_points": 100, "fresh": True}
 
 
 def deviation(path, frames):
@@ -49,7 +22,7 @@ def share_at_full_speed(frames, speed):
 
 @pytest.mark.parametrize("speed", [0.2, 0.5, 0.8])
 @pytest.mark.parametrize("seed", range(3))
-def test_it_stays_on_the_path_at_full_speed_and_reaches_its_end(flat, seed, speed):
+def test_it_stays_on_the_path_at_full_speed_and_reaches_its_end(flat, seed, speed, drive):
     path = plan_path(*flat(seed), 12.0, np.random.default_rng(seed))
     frames = drive(path, PathFollower(), speed)
     assert deviation(path, frames).max() < 0.10
@@ -58,7 +31,7 @@ def test_it_stays_on_the_path_at_full_speed_and_reaches_its_end(flat, seed, spee
 
 
 @pytest.mark.parametrize("speed", [0.2, 0.8])
-def test_patrol_comes_back(flat, speed):
+def test_patrol_comes_back(flat, speed, drive):
     grid, free = flat(4)
     path = plan_path(grid, free, 10.0, np.random.default_rng(0), **Patrol.reset_options)
     frames = drive(path, Patrol(), speed)
@@ -68,7 +41,7 @@ def test_patrol_comes_back(flat, speed):
 
 @pytest.mark.parametrize("speed", [0.2, 0.5, 0.8])
 @pytest.mark.parametrize("seed", range(4))
-def test_it_turns_on_the_spot_where_the_path_leads_back(corridor, seed, speed):
+def test_it_turns_on_the_spot_where_the_path_leads_back(corridor, seed, speed, drive):
     path = plan_path(*corridor, 12.0, np.random.default_rng(seed))
     frames = drive(path, PathFollower(), speed)
     assert deviation(path, frames).max() < 0.10
@@ -76,7 +49,7 @@ def test_it_turns_on_the_spot_where_the_path_leads_back(corridor, seed, speed):
     assert driven > 0.9 * path.length_m
 
 
-def test_full_speed_on_straights_at_any_scale():
+def test_full_speed_on_straights_at_any_scale(drive):
     path = Path(resample(np.array([(0.0, 0.0), (6.0, 0.0)])))
     for speed in (0.2, 1.0):
         frames = drive(path, PathFollower(), speed)
@@ -85,7 +58,7 @@ def test_full_speed_on_straights_at_any_scale():
         assert len(frames) <= ((6.0 - 0.05) / speed + speed / 2 / 1.0) * FPS + 2
 
 
-def test_another_ratio_of_speed_and_turn_rate(flat):
+def test_another_ratio_of_speed_and_turn_rate(flat, drive):
     path = plan_path(*flat(1), 12.0, np.random.default_rng(3))
     frames = drive(path, PathFollower(), 0.4, turning_radius_m=0.15)
     assert deviation(path, frames).max() < 0.10
@@ -105,7 +78,7 @@ def test_any_waypoints_give_a_valid_action(seed):
     rng = np.random.default_rng(seed)
     waypoints = np.cumsum(rng.normal(0, 0.15, (5, 2)), axis=0).astype(np.float32) * (seed % 4)
     for agent in AGENTS.values():
-        action = agent().act({"waypoints": waypoints}, INFO)
+        action = agent().act({"waypoints": waypoints}, {**INFO, "slam": SLAM})
         assert action.dtype == np.float32
         assert action.shape == (2,)
         assert (np.abs(action) <= 1).all()

@@ -5,11 +5,12 @@ import pytest
 
 from slamgym.agents import PathFollower
 from slamgym.agents.planner import plan_path
-from slamgym.env import CLEARANCE_M, END_REACHED_M
+from slamgym.env import END_REACHED_M
 from slamgym.eval.drive import distance_to_path
 from slamgym.robot import ROBOT_HEIGHT, ROBOT_RADIUS, DifferentialDrive
 from slamgym.scenes.occupancy import free_space, occupancy_grid
 from slamgym.scenes.registry import load_scene
+from slamgym.stage import CLEARANCE_M
 
 FPS = 30
 

@@ -18,13 +18,13 @@ from rich.table import Table
 
 import slamgym  # noqa: F401  registers the environments
 from slamgym.agents import PathFollower
-from slamgym.env import load_house
 from slamgym.params import DriveParams
 from slamgym.render import Renderer
 from slamgym.rollout import run_episode
 from slamgym.slam.backend import SlamConfig
 from slamgym.slam.orb_settings import OrbOptions, settings
 from slamgym.slam.vocabulary import vocabulary_path
+from slamgym.stage import load_stage
 
 SEED = 7
 PARAMS: dict[str, Any] = {"speed": 0.4, "path_length_m": 6.0}
@@ -60,7 +60,7 @@ def drive(slam_sync: str) -> dict[str, Any]:
 def bare_loop(poses: list[Any]) -> tuple[float, float]:
     """Median milliseconds of rendering and of `track_rgbd`, without anything of slamgym around the wheel."""
     params = DriveParams(**PARAMS)
-    house, _, _ = load_house(params.scene, params.lighting)
+    house = load_stage(params).house
     slam = bare_slam(params)
     render_ms, track_ms = [], []
     with Renderer(house, params.camera) as renderer:

@@ -56,6 +56,34 @@ def test_doors_stay_as_wide_as_they_are_and_can_be_passed(door_m, offset):
     assert free[tuple(grid.cell_of((5.0, 2.0)))]
 
 
+@pytest.mark.parametrize("degrees", [0, 11, 22.5, 30, 45, 60, 77, 90])
+def test_doors_of_070_can_be_passed_at_any_angle(degrees):
+    for offset in (0.0, 0.013, 0.027, 0.041):
+        parts = [turned(part, degrees, offset) for part in two_rooms(0.7)]
+        grid = grid_of(*parts)
+        free = free_space(grid, 0.25)
+        for x in (1.0, 5.0):
+            assert free[tuple(grid.cell_of(turned_xy(np.array([x, 2.0]), degrees, offset)))]
+
+
+@pytest.mark.parametrize("degrees", [0, 22.5, 45])
+def test_gaps_of_half_a_metre_cannot_be_passed_at_any_angle(degrees):
+    grid = grid_of(*(turned(part, degrees, 0.0) for part in two_rooms(0.5)))
+    free = free_space(grid, 0.25)
+    reached = [free[tuple(grid.cell_of(turned_xy(np.array([x, 2.0]), degrees, 0.0)))] for x in (1.0, 5.0)]
+    assert sum(reached) == 1
+
+
+def turned_xy(xy, degrees, offset):
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return xy @ np.array([[c, s], [-s, c]]) + offset
+
+
+def turned(part, degrees, offset):
+    xy = turned_xy(part.vertices[:, :2], degrees, offset)
+    return mesh(np.column_stack([xy, part.vertices[:, 2]]), part.faces)
+
+
 def test_free_space_is_the_larger_room_where_the_door_is_too_narrow():
     wall = [box(1.95, 0, 0, 2.05, 1.8, 2.5), box(1.95, 2.2, 0, 2.05, 4, 2.5)]
     free = free_space(grid := grid_of(floor(), *wall), 0.25)
@@ -81,6 +109,22 @@ def test_no_floor_no_drive():
     assert occupied_at(grid, 2.5, 2.0)
     assert not occupied_at(grid, 1.0, 2.0)
     assert not occupied_at(grid, 5.0, 2.0)
+
+
+def test_floors_as_real_meshes_have_them():
+    slab = box(0, 0, -0.3, 3, 4, 0)
+    next_room = floor(3, 0, 6, 4, z=-0.02)
+    threshold, carpet = box(2.9, 0, 0, 3.1, 4, 0.03), floor(1, 1, 2, 3, z=0.012)
+    doubled = floor(4, 1, 6, 3, z=-0.0201)
+    step = box(5, 0, 0, 6, 0.5, 0.05)
+    grid = grid_of(slab, next_room, threshold, carpet, doubled, step)
+    occupied = grid.occupied & ~grid_of(floor(5, 0, 6, 0.5), floor()).occupied
+    rows, columns = np.nonzero(occupied)
+    x, y = grid.centre_of(np.column_stack([rows, columns])).T
+    # Nothing but the step is in the way.
+    assert (x > 4.94).all()
+    assert (y < 0.56).all()
+    assert len(rows) >= 20 * 10
 
 
 def test_the_grid_covers_the_floor_with_an_occupied_margin():
@@ -122,6 +166,13 @@ def test_free_space_keeps_the_robot_clear_of_everything():
     occupied = grid.centre_of(np.argwhere(grid.occupied))
     distance = np.linalg.norm(free[:, None] - occupied[None], axis=2).min()
     assert 0.25 < distance < 0.35
+
+
+def test_what_lies_beyond_the_grid_is_not_free():
+    free = free_space(OccupancyGrid(np.zeros((60, 80), bool), np.zeros(2), 0.05), 0.25)
+    rows, columns = np.nonzero(free)
+    # The centre of the sixth cell is 0.275 m from the border, and 0.3 m from the centre of the first cell beyond it.
+    assert (rows.min(), rows.max(), columns.min(), columns.max()) == (5, 54, 5, 74)
 
 
 def test_errors_say_what_is_wrong_with_the_scene():

@@ -10,6 +10,7 @@ SOLIDS = {
     "tube": (solids.lathe([(1, 0), (2, 0), (2, 1), (1, 1), (1, 0)], sides=256), 3 * np.pi),
     "ball": (solids.ball(1.0, (3, 2, 1)), 3.2),
     "ellipsoid": (solids.cushion((-1, 1), (-2, 2), (-3, 3), softness=1.0), 4 / 3 * np.pi * 6),
+    "bevelled": (solids.bevelled((0, 1), (0, 2), (0, 3), 0.05), 5.9),
     "block": (solids.cushion((0, 1), (0, 1), (0, 1), softness=0.05), 1.0),
     "ribbon": (solids.ribbon(np.column_stack([np.linspace(0, 2, 9), np.zeros(9)]), 0.1, (0, 3)), 0.6),
     "tub": (solids.lathe([(0, 0), (1, 0), (1, 1), (0, 1)], sides=64, roundness=0.05), 4.0),

@@ -2,10 +2,23 @@
 
 import numpy as np
 
+from slamgym.scenes.home.furniture.clutter import bottles
 from slamgym.scenes.home.furniture.piece import Component, Piece, Top
 from slamgym.scenes.home.furniture.tables import cabinet
 from slamgym.scenes.home.palette import Palette
-from slamgym.scenes.home.solids import box, cushion, cylinder, lathe, merge, placed, stretched, tilted
+from slamgym.scenes.home.solids import (
+    Mesh,
+    bevelled,
+    box,
+    cushion,
+    cylinder,
+    lathe,
+    merge,
+    picture,
+    placed,
+    stretched,
+    tilted,
+)
 
 
 def toilet(palette: Palette, _: np.random.Generator) -> Piece:
@@ -117,7 +130,8 @@ def washing_machine(palette: Palette, _: np.random.Generator) -> Piece:
 def mirror_cabinet(palette: Palette, _: np.random.Generator) -> Piece:
     """Hangs above the basin; its origin is its lower edge."""
     unit = cabinet("mirror_cabinet", (0.6, 0.16, 0.65), (2, 1), palette.white, palette.white, palette.metal, 0.0)
-    return Piece(unit.kind, tuple(c for c in unit.components if c.name != "plinth"))
+    kept = tuple(c for c in unit.components if c.name != "plinth")
+    return Piece(unit.kind, (*kept, Component("picture", palette.mirror, picture(0.57, (0.03, 0.58), 0.136))))
 
 
 def towel_rail(palette: Palette, rng: np.random.Generator) -> Piece:
@@ -159,5 +173,56 @@ def laundry_basket(palette: Palette, _: np.random.Generator) -> Piece:
             Component("shell", palette.oak, lathe(shell, (0.0, y, 0.0))),
             Component("bands", palette.walnut, merge(bands)),
             Component("clothes", palette.cushions[0], cushion((-0.14, 0.14), (y - 0.14, y + 0.14), (0.38, 0.56), 0.7)),
+        ),
+    )
+
+
+def towel_hooks(palette: Palette, rng: np.random.Generator) -> Piece:
+    """A rail with hooks and two towels; its origin is the rail's middle."""
+    towels = [
+        cushion((x - 0.11, x + 0.11), (0.015, 0.06), (-float(rng.uniform(0.5, 0.75)), 0.01), 0.25)
+        for x in (-0.14, 0.14)
+    ]
+    cloths = [palette.cushions[int(i)] for i in rng.permutation(3)[:2]]
+    return Piece(
+        "towel_hooks",
+        (
+            Component("rail", palette.metal, box((-0.3, 0.3), (0.0, 0.014), (-0.015, 0.025))),
+            *(
+                Component(f"towel_{i}", cloth, towel)
+                for i, (cloth, towel) in enumerate(zip(cloths, towels, strict=True))
+            ),
+        ),
+    )
+
+
+def paper_roll(palette: Palette, _: np.random.Generator) -> Piece:
+    roll = cylinder(0.05, (-0.05, 0.05), sides=16)
+    x, y, z = roll.vertices.T
+    level = Mesh(np.column_stack([z, y + 0.065, -x]), roll.faces, roll.uv)
+    return Piece(
+        "paper_roll",
+        (
+            Component("roll", palette.linen, level),
+            Component("holder", palette.metal, bevelled((-0.07, 0.07), (0.0, 0.012), (0.03, 0.07), 0.004)),
+            Component("sheet", palette.linen, box((-0.048, 0.048), (0.012, 0.0145), (-0.12, 0.0))),
+        ),
+    )
+
+
+def bath_shelf(palette: Palette, rng: np.random.Generator) -> Piece:
+    """A glass shelf's worth of bottles and a folded towel."""
+    jars = bottles(palette, rng).placed(0.0, (-0.1, 0.09, 0.018)).components
+    return Piece(
+        "bath_shelf",
+        (
+            Component("board", palette.white, bevelled((-0.3, 0.3), (0.0, 0.16), (-0.0, 0.016))),
+            Component(
+                "brackets", palette.metal, merge(box((x, x + 0.015), (0.0, 0.1), (-0.05, -0.001)) for x in (-0.2, 0.2))
+            ),
+            Component(
+                "towel", palette.cushions[int(rng.integers(3))], cushion((0.08, 0.28), (0.02, 0.15), (0.016, 0.12), 0.3)
+            ),
+            *jars,
         ),
     )

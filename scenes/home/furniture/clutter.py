@@ -1,15 +1,27 @@
 """Small things that stand on furniture, each centred on its origin."""
 
-from collections.abc import Callable
-
 import numpy as np
 
-from slamgym.scenes.home.furniture.decor import table_lamp
-from slamgym.scenes.home.furniture.piece import Component, Piece
+from slamgym.scenes.home.furniture.desktop import laptop, papers, pen_cup
+from slamgym.scenes.home.furniture.lamps import desk_lamp, table_lamp
+from slamgym.scenes.home.furniture.piece import Component, Maker, Piece
 from slamgym.scenes.home.furniture.shelves import BOX_FRONT, book, in_atlas
 from slamgym.scenes.home.palette import Palette
 from slamgym.scenes.home.prints import LABELS
-from slamgym.scenes.home.solids import Mesh, ball, box, cushion, cylinder, lathe, merge, picture, placed, sheet, tilted
+from slamgym.scenes.home.solids import (
+    Mesh,
+    ball,
+    bevelled,
+    box,
+    cylinder,
+    lathe,
+    merge,
+    picture,
+    placed,
+    sheet,
+    stretched,
+    tilted,
+)
 
 
 def book_stack(palette: Palette, rng: np.random.Generator) -> Piece:
@@ -33,7 +45,7 @@ def _laid(mesh: Mesh) -> Mesh:
 def mug(palette: Palette, rng: np.random.Generator) -> Piece:
     cup = [(0.0, 0.0), (0.038, 0.0), (0.042, 0.09), (0.037, 0.09), (0.034, 0.01), (0.0, 0.01)]
     handle = box((0.04, 0.065), (-0.007, 0.007), (0.025, 0.07))
-    finish = (palette.porcelain, palette.clay, palette.cushions[2])[int(rng.integers(3))]
+    finish = (palette.porcelain, palette.clay, *palette.plastics)[int(rng.integers(7))]
     return Piece(
         "mug",
         (
@@ -99,31 +111,6 @@ def bottles(palette: Palette, rng: np.random.Generator) -> Piece:
     return Piece("bottles", tuple(parts))
 
 
-def monitor(palette: Palette, _: np.random.Generator) -> Piece:
-    return Piece(
-        "monitor",
-        (
-            Component("foot", palette.black, box((-0.12, 0.12), (-0.09, 0.09), (0.0, 0.012))),
-            Component("neck", palette.black, box((-0.025, 0.025), (-0.05, -0.02), (0.012, 0.3))),
-            Component("case", palette.black, box((-0.28, 0.28), (-0.02, 0.015), (0.14, 0.5))),
-            Component("screen", palette.screen, picture(0.53, (0.155, 0.485), 0.017), glow=True),
-        ),
-    )
-
-
-def keyboard(palette: Palette, _: np.random.Generator) -> Piece:
-    rows = [box((-0.2, 0.2), (y, y + 0.014), (0.012, 0.018)) for y in (-0.05, -0.03, -0.01, 0.01, 0.03)]
-    mouse = cushion((0.27, 0.33), (-0.05, 0.05), (0.0, 0.035), 0.6)
-    return Piece(
-        "keyboard",
-        (
-            Component("body", palette.black, box((-0.22, 0.22), (-0.065, 0.06), (0.0, 0.012))),
-            Component("keys", palette.white, merge(rows)),
-            Component("mouse", palette.black, mouse),
-        ),
-    )
-
-
 def magazine(palette: Palette, rng: np.random.Generator) -> Piece:
     """Lies flat, showing its cover."""
     cover = palette.pictures[int(rng.integers(len(palette.pictures)))]
@@ -153,11 +140,88 @@ def photo(palette: Palette, rng: np.random.Generator) -> Piece:
     )
 
 
-Maker = Callable[[Palette, np.random.Generator], Piece]
+def remote(palette: Palette, _: np.random.Generator) -> Piece:
+    keys = [
+        box((x - 0.005, x + 0.005), (y, y + 0.008), (0.018, 0.02))
+        for x in (-0.012, 0.0, 0.012)
+        for y in (-0.07, -0.05, -0.03, -0.01)
+    ]
+    return Piece(
+        "remote",
+        (
+            Component("body", palette.black, bevelled((-0.024, 0.024), (-0.09, 0.09), (0.0, 0.018), 0.005)),
+            Component("keys", palette.porcelain, merge(keys)),
+        ),
+    )
 
-ON_LIVING_TABLES: tuple[Maker, ...] = (book_stack, mug, vase, fruit_bowl, magazine, photo)
-ON_KITCHEN_TOPS: tuple[Maker, ...] = (packages, bottles, fruit_bowl, mug, packages)
-ON_CABINETS: tuple[Maker, ...] = (vase, photo, book_stack, table_lamp, photo)
-ON_DESKS: tuple[Maker, ...] = (book_stack, mug, photo, magazine)
-ON_NIGHTSTANDS: tuple[Maker, ...] = (table_lamp, book_stack, mug)
-IN_BATHROOMS: tuple[Maker, ...] = (bottles, packages)
+
+def small_plant(palette: Palette, rng: np.random.Generator) -> Piece:
+    pot = [(0.0, 0.0), (0.05, 0.0), (0.065, 0.1), (0.058, 0.1), (0.055, 0.085), (0.0, 0.085)]
+    blades = [
+        placed(
+            tilted(stretched(lathe([(0, 0), (0.016, 0.06), (0.012, 0.12), (0, length)], sides=4), y=0.25), -lean),
+            yaw,
+            (0, 0, 0.08),
+        )
+        for length, lean, yaw in zip(
+            rng.uniform(0.14, 0.26, 11), rng.uniform(0.1, 1.0, 11), rng.uniform(0.0, 6.28, 11), strict=True
+        )
+    ]
+    finish = (palette.clay, palette.porcelain, *palette.plastics)[int(rng.integers(7))]
+    return Piece(
+        "small_plant",
+        (Component("pot", finish, lathe(pot)), Component("leaves", palette.leaves, merge(blades))),
+    )
+
+
+def candles(palette: Palette, rng: np.random.Generator) -> Piece:
+    sticks = [cylinder(0.02, (0.01, float(rng.uniform(0.06, 0.18))), (x, 0.0)) for x in (-0.055, 0.0, 0.055)]
+    plate = lathe([(0, 0), (0.1, 0), (0.105, 0.01), (0, 0.01)], sides=20)
+    return Piece(
+        "candles", (Component("plate", palette.metal, plate), Component("sticks", palette.linen, merge(sticks)))
+    )
+
+
+def plates(palette: Palette, rng: np.random.Generator) -> Piece:
+    """A place that somebody has laid, or left."""
+    glass = lathe([(0, 0), (0.028, 0), (0.032, 0.11), (0.029, 0.11), (0.026, 0.008), (0, 0.008)], (0.16, 0.06, 0))
+    plate = lathe([(0, 0), (0.08, 0), (0.125, 0.018), (0.12, 0.02), (0.075, 0.008), (0, 0.008)], sides=24)
+    knife = [bevelled((x, x + 0.014), (-0.1, 0.09), (0.0, 0.004), 0.002) for x in (0.145, -0.165)]
+    return Piece(
+        "plates",
+        (
+            Component("plate", (palette.porcelain, palette.clay, *palette.plastics[1:3])[int(rng.integers(4))], plate),
+            Component("glass", palette.metal, glass),
+            Component("cutlery", palette.metal, merge(knife)),
+        ),
+    )
+
+
+ON_LIVING_TABLES: tuple[Maker, ...] = (
+    book_stack,
+    mug,
+    vase,
+    fruit_bowl,
+    magazine,
+    photo,
+    remote,
+    candles,
+    papers,
+    small_plant,
+)
+ON_DINING_TABLES: tuple[Maker, ...] = (plates, mug, vase, fruit_bowl, plates, candles, papers, magazine)
+ON_CABINETS: tuple[Maker, ...] = (vase, photo, book_stack, table_lamp, photo, small_plant, candles, papers)
+ON_DESKS: tuple[Maker, ...] = (
+    desk_lamp,
+    book_stack,
+    mug,
+    papers,
+    pen_cup,
+    photo,
+    papers,
+    laptop,
+    small_plant,
+    magazine,
+)
+ON_NIGHTSTANDS: tuple[Maker, ...] = (table_lamp, book_stack, mug, small_plant)
+IN_BATHROOMS: tuple[Maker, ...] = (bottles, packages, small_plant)

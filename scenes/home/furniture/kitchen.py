@@ -9,7 +9,7 @@ from slamgym.scenes.home.furniture.shelves import BOX_FRONT, in_atlas
 from slamgym.scenes.home.furniture.tables import cabinet
 from slamgym.scenes.home.palette import Palette
 from slamgym.scenes.home.prints import LABELS
-from slamgym.scenes.home.solids import box, cylinder, merge, tilted
+from slamgym.scenes.home.solids import bevelled, box, cylinder, merge, tilted
 
 UNIT = 0.6
 _HALF, _DEPTH, _HEIGHT = UNIT / 2, 0.6, 0.9
@@ -23,7 +23,9 @@ def _carcass(palette: Palette) -> tuple[Component, Component]:
 
 
 def _worktop(palette: Palette) -> Component:
-    return Component("worktop", palette.counter, box((-_HALF, _HALF), (0.0, _DEPTH + 0.02), (_HEIGHT - 0.04, _HEIGHT)))
+    return Component(
+        "worktop", palette.counter, bevelled((-_HALF, _HALF), (0.0, _DEPTH + 0.02), (_HEIGHT - 0.04, _HEIGHT))
+    )
 
 
 def cupboard(palette: Palette, rng: np.random.Generator) -> Piece:
@@ -95,8 +97,8 @@ def oven(palette: Palette, _: np.random.Generator) -> Piece:
 
 
 def fridge(palette: Palette, _: np.random.Generator) -> Piece:
-    doors = [box((-0.296, 0.296), (0.6, 0.64), z) for z in ((0.06, 0.62), (0.63, 1.8))]
-    handles = [box((-0.26, -0.235), (0.64, 0.68), z) for z in ((0.36, 0.58), (0.67, 1.1))]
+    doors = [bevelled((-0.296, 0.296), (0.6, 0.64), z) for z in ((0.06, 0.62), (0.63, 1.8))]
+    handles = [bevelled((-0.26, -0.235), (0.64, 0.68), z) for z in ((0.36, 0.58), (0.67, 1.1))]
     notes = [
         in_atlas(box((x, x + 0.1), (0.64, 0.643), (z, z + 0.13)), BOX_FRONT, (0, i), LABELS)
         for i, (x, z) in enumerate(((0.02, 1.3), (0.15, 1.36), (-0.12, 1.45), (0.08, 1.52)))
@@ -104,7 +106,7 @@ def fridge(palette: Palette, _: np.random.Generator) -> Piece:
     return Piece(
         "fridge",
         (
-            Component("body", palette.white, box((-0.3, 0.3), (0.02, 0.6), (0.04, 1.82))),
+            Component("body", palette.white, bevelled((-0.3, 0.3), (0.02, 0.6), (0.04, 1.82), 0.012)),
             Component("feet", palette.black, box((-0.28, 0.28), (0.06, 0.58), (0.0, 0.04))),
             Component("doors", palette.white, merge(doors)),
             Component("handles", palette.metal, merge(handles)),
@@ -112,6 +114,12 @@ def fridge(palette: Palette, _: np.random.Generator) -> Piece:
         ),
         front=0.5,
     )
+
+
+def backsplash(palette: Palette, height: float) -> Piece:
+    """Tiles above a unit's worktop."""
+    tiles = box((-_HALF, _HALF), (0.0, 0.006), (_HEIGHT + 0.001, _HEIGHT + height))
+    return Piece("backsplash", (Component("tiles", palette.backsplash, tiles),))
 
 
 def wall_cupboard(palette: Palette, _: np.random.Generator) -> Piece:

@@ -1,13 +1,13 @@
 """A piece of furniture: components of several finishes that stand, move and collide together."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from slamgym.scenes.home import solids
-from slamgym.scenes.home.palette import Finish
+from slamgym.scenes.home.palette import Finish, Palette
 from slamgym.scenes.home.solids import Mesh
 from slamgym.scenes.house import Part
 from slamgym.types import FloatArray
@@ -41,12 +41,12 @@ class Piece:
     components: tuple[Component, ...]
     tops: tuple[Top, ...] = ()
     front: float = 0.0
+    bounds: FloatArray = field(init=False)
+    """Axis-aligned bounding box (2, 3): low corner, high corner."""
 
-    @property
-    def bounds(self) -> FloatArray:
-        """Axis-aligned bounding box (2, 3): low corner, high corner."""
+    def __post_init__(self) -> None:
         vertices = np.concatenate([c.mesh.vertices for c in self.components])
-        return np.stack([vertices.min(axis=0), vertices.max(axis=0)])
+        object.__setattr__(self, "bounds", np.stack([vertices.min(axis=0), vertices.max(axis=0)]))
 
     def placed(self, yaw: float, at: ArrayLike) -> "Piece":
         """The piece turned by `yaw` and moved; its tops stay in the old frame and are dropped."""
@@ -69,3 +69,14 @@ class Piece:
                 light=np.ones(c.mesh.vertices.shape, dtype=np.float32) if c.glow else None,
                 solid=c.solid,
             )
+
+
+Maker = Callable[[Palette, np.random.Generator], Piece]
+"""Designs a piece in the materials of a house."""
+Made = Callable[[Maker, Palette, np.random.Generator], Piece]
+"""Gives the piece that stands where a maker's would: the maker's own, or another of its kind and about its size."""
+
+
+def made_by_code(maker: Maker, palette: Palette, rng: np.random.Generator) -> Piece:
+    """The maker's own piece."""
+    return maker(palette, rng)

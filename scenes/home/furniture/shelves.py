@@ -1,11 +1,11 @@
-"""Book shelves, full of books."""
+"""Shelves with books and other things."""
 
 import numpy as np
 
 from slamgym.scenes.home import prints
-from slamgym.scenes.home.furniture.piece import Component, Piece
-from slamgym.scenes.home.palette import Palette
-from slamgym.scenes.home.solids import Interval, Mesh, box, merge
+from slamgym.scenes.home.furniture.piece import Component, Piece, Top
+from slamgym.scenes.home.palette import Finish, Palette
+from slamgym.scenes.home.solids import Interval, Mesh, bevelled, box, lathe, merge
 
 
 def in_atlas(mesh: Mesh, front: int, cell: tuple[int, int], cells: tuple[int, int]) -> Mesh:
@@ -45,29 +45,62 @@ def row_of_books(rng: np.random.Generator, x: Interval, y: Interval, z: float, r
 
 
 def bookshelf(palette: Palette, rng: np.random.Generator) -> Piece:
-    width, depth = float(rng.uniform(0.8, 1.1)), 0.3
-    levels = int(rng.integers(4, 7))
+    """Open shelves: books, and on some boards boxes, jars and whatever else ends up there."""
+    width, depth = float(rng.uniform(0.7, 1.1)), 0.3
+    levels = int(rng.integers(3, 7))
     height = 0.08 + 0.34 * levels
     half, board = width / 2, 0.02
     heights = 0.06 + 0.34 * np.arange(levels + 1)
-    wood = palette.oak if rng.random() < 0.5 else palette.white
-    sides = [box((x, x + board), (0.0, depth), (0.0, height)) for x in (-half, half - board)]
-    boards = [box((-half + board, half - board), (0.0, depth), (z, z + board)) for z in heights]
-    books = [
-        book
-        for z in heights[:-1]
-        for book in row_of_books(rng, (-half + board + 0.005, half - board), (0.03, 0.25), z + board, 0.3)
-    ]
+    wood = (palette.oak, palette.white, palette.walnut)[int(rng.integers(3))]
+    sides = [bevelled((x, x + board), (0.0, depth), (0.0, height), 0.003) for x in (-half, half - board)]
+    boards = [bevelled((-half + board, half - board), (0.0, depth), (z, z + board), 0.003) for z in heights]
+    inner = (-half + board + 0.005, half - board)
+    books, objects = [], []
+    for level, z in enumerate((heights[:-1] + board).tolist()):
+        end = inner[1] if rng.random() < 0.5 or level == 1 else inner[0] + float(rng.uniform(0.15, 0.7)) * width
+        books += row_of_books(rng, (inner[0], end), (0.03, 0.25), z, 0.3)
+        objects += _odds_and_ends(palette, rng, (end + 0.02, inner[1]), z)
+    back = box((-half + board, half - board), (0.0, 0.008), (0.06, height - 0.02))
     return Piece(
         "bookshelf",
         (
             Component("sides", wood, merge(sides)),
             Component("boards", wood, merge(boards)),
-            Component("back", wood, box((-half + board, half - board), (0.0, 0.008), (0.06, height - 0.02))),
+            Component("back", wood, back),
             Component("books", palette.books, merge(books)),
+            *(Component(f"object_{i}", finish, mesh) for i, (finish, mesh) in enumerate(objects)),
         ),
+        tops=(Top((-half + 0.1, half - 0.1), (0.08, 0.22), height),) if levels < 5 else (),
         front=0.4,
     )
+
+
+def _odds_and_ends(palette: Palette, rng: np.random.Generator, x: Interval, z: float) -> list[tuple[Finish, Mesh]]:
+    """Boxes, jars and vases from x[0] to x[1]."""
+    found: list[tuple[Finish, Mesh]] = []
+    at = x[0]
+    while at < x[1] - 0.12:
+        kind, height = int(rng.integers(3)), float(rng.uniform(0.08, 0.26))
+        if kind == 0:
+            width = min(float(rng.uniform(0.12, 0.3)), x[1] - at)
+            finish = (palette.card, palette.wicker, *palette.plastics)[int(rng.integers(7))]
+            found.append((finish, bevelled((at, at + width), (0.04, 0.26), (z, z + height), 0.008)))
+        else:
+            r = float(rng.uniform(0.03, 0.055))
+            width = 2.0 * r
+            neck = r * float(rng.uniform(0.4, 1.0))
+            profile = [
+                (0.0, 0.0),
+                (0.7 * r, 0.0),
+                (r, 0.4 * height),
+                (neck, 0.85 * height),
+                (neck, height),
+                (0.0, height),
+            ]
+            finish = (palette.clay, palette.porcelain, palette.metal, *palette.plastics)[int(rng.integers(8))]
+            found.append((finish, lathe(profile, (at + r, 0.14, z), 12)))
+        at += width + float(rng.uniform(0.015, 0.06))
+    return found
 
 
 def wall_shelf(palette: Palette, rng: np.random.Generator) -> Piece:

@@ -1,5 +1,6 @@
 """Tables, desks and sideboards: things with a top to put things on."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -7,50 +8,98 @@ import numpy as np
 from slamgym.scenes.home.furniture.piece import Component, Piece, Top
 from slamgym.scenes.home.furniture.seating import legs
 from slamgym.scenes.home.palette import Finish, Palette
-from slamgym.scenes.home.solids import Interval, Mesh, box, cylinder, lathe, merge
+from slamgym.scenes.home.solids import Interval, Mesh, bevelled, box, cylinder, lathe, merge, picture, placed
 
 
-def _table(kind: str, wood: Finish, width: float, depth: float, height: float, leg: float) -> Piece:
-    half, inset = width / 2, 0.05
-    z = (height - 0.12, height - 0.035)
-    aprons = [box((-half + inset + leg, half - inset - leg), (y, y + 0.02), z) for y in (0.06, depth - 0.08)]
-    aprons += [box((x, x + 0.02), (inset + leg, depth - inset - leg), z) for x in (-half + 0.06, half - 0.08)]
+def _table(kind: str, wood: Finish, size: tuple[float, float, float], leg: float, rng: np.random.Generator) -> Piece:
+    """A table of width, depth and height: on four legs with aprons, on trestles, or a thick top on slim metal legs."""
+    width, depth, height = size
+    half, inset, top = width / 2, 0.05, height - 0.035
+    design = int(rng.integers(3))
+    if design == 1:
+        stand = [
+            bevelled((x - 0.04, x + 0.04), (0.08, depth - 0.08), z)
+            for x in (-half + 0.22, half - 0.22)
+            for z in ((0.0, 0.05), (top - 0.05, top))
+        ]
+        stand += [
+            bevelled((x - 0.03, x + 0.03), (depth / 2 - 0.1, depth / 2 + 0.1), (0.05, top - 0.05))
+            for x in (-half + 0.22, half - 0.22)
+        ]
+        stand += [box((-half + 0.25, half - 0.25), (depth / 2 - 0.02, depth / 2 + 0.02), (0.3 * top, 0.3 * top + 0.08))]
+    else:
+        leg = leg if design == 0 else 0.6 * leg
+        stand = [legs(width - 2 * inset, (inset, depth - inset), top, leg)]
+        z = (height - 0.12, top)
+        stand += [box((-half + inset + leg, half - inset - leg), (y, y + 0.02), z) for y in (0.06, depth - 0.08)]
+        stand += [box((x, x + 0.02), (inset + leg, depth - inset - leg), z) for x in (-half + 0.06, half - 0.08)]
     return Piece(
         kind,
         (
-            Component("legs", wood, legs(width - 2 * inset, (inset, depth - inset), height - 0.035, leg)),
-            Component("aprons", wood, merge(aprons)),
-            Component("top", wood, box((-half, half), (0.0, depth), (height - 0.035, height))),
+            Component("stand", wood, merge(stand)),
+            Component("top", wood, bevelled((-half, half), (0.0, depth), (top, height))),
         ),
         tops=(Top((-half + 0.1, half - 0.1), (0.1, depth - 0.1), height),),
     )
 
 
+def _wood(palette: Palette, rng: np.random.Generator) -> Finish:
+    return (palette.oak, palette.walnut, palette.oak, palette.white)[int(rng.integers(4))]
+
+
 def dining_table(palette: Palette, rng: np.random.Generator) -> Piece:
-    return _table("table", palette.oak, float(rng.uniform(1.2, 1.6)), 0.85, 0.75, 0.06)
+    return _table("table", _wood(palette, rng), (float(rng.uniform(1.2, 1.7)), 0.85, 0.75), 0.06, rng)
 
 
 def kitchen_table(palette: Palette, rng: np.random.Generator) -> Piece:
-    return _table("table", palette.oak, float(rng.uniform(0.8, 1.0)), 0.75, 0.75, 0.055)
+    return _table("table", _wood(palette, rng), (float(rng.uniform(0.8, 1.0)), 0.75, 0.75), 0.055, rng)
 
 
 def coffee_table(palette: Palette, rng: np.random.Generator) -> Piece:
-    table = _table("coffee_table", palette.walnut, float(rng.uniform(0.8, 1.05)), 0.52, 0.42, 0.05)
+    """Rectangular with a shelf, or round on a drum."""
+    if rng.random() < 0.35:
+        return _drum_table(palette)
+    wood = _wood(palette, rng)
+    table = _table("coffee_table", wood, (float(rng.uniform(0.8, 1.05)), 0.52, 0.42), 0.05, rng)
     low, high = table.bounds
-    shelf = box((low[0] + 0.07, high[0] - 0.07), (0.07, 0.45), (0.14, 0.16))
-    return Piece(table.kind, (*table.components, Component("shelf", palette.walnut, shelf)), table.tops)
+    shelf = bevelled((low[0] + 0.3, high[0] - 0.3), (0.12, 0.4), (0.18, 0.2))
+    return Piece(table.kind, (*table.components, Component("shelf", wood, shelf)), table.tops)
 
 
-def round_table(palette: Palette, _: np.random.Generator) -> Piece:
-    """A small side table on one foot."""
+def _drum_table(palette: Palette) -> Piece:
+    y = 0.38
+    drum = [(0.0, 0.0), (0.2, 0.0), (0.2, 0.02), (0.13, 0.1), (0.13, 0.3), (0.2, 0.4), (0.0, 0.4)]
+    top = [(0.0, 0.4), (0.37, 0.4), (0.38, 0.41), (0.38, 0.43), (0.37, 0.44), (0.0, 0.44)]
+    return Piece(
+        "coffee_table",
+        (
+            Component("drum", palette.walnut, lathe(drum, (0.0, y, 0.0), 24)),
+            Component("top", palette.walnut, lathe(top, (0.0, y, 0.0), 32)),
+        ),
+        tops=(Top((-0.22, 0.22), (y - 0.22, y + 0.22), 0.44),),
+    )
+
+
+def round_table(palette: Palette, rng: np.random.Generator) -> Piece:
+    """A small side table on one foot, or a stool-like one on legs."""
     y = 0.25
+    wood = _wood(palette, rng)
+    if rng.random() < 0.5:
+        stand = Component(
+            "foot",
+            palette.metal,
+            merge(
+                [
+                    lathe([(0, 0), (0.17, 0), (0.17, 0.015), (0, 0.03)], (0, y, 0), 20),
+                    cylinder(0.02, (0.02, 0.5), (0.0, y)),
+                ]
+            ),
+        )
+    else:
+        stand = Component("legs", wood, legs(0.32, (y - 0.16, y + 0.16), 0.5, 0.03))
     return Piece(
         "side_table",
-        (
-            Component("foot", palette.metal, lathe([(0, 0), (0.17, 0), (0.17, 0.015), (0, 0.03)], (0, y, 0), 20)),
-            Component("column", palette.metal, cylinder(0.02, (0.02, 0.5), (0.0, y))),
-            Component("top", palette.oak, cylinder(0.24, (0.5, 0.525), (0.0, y), 24)),
-        ),
+        (stand, Component("top", wood, cylinder(0.24, (0.5, 0.525), (0.0, y), 24))),
         tops=(Top((-0.14, 0.14), (y - 0.14, y + 0.14), 0.525),),
     )
 
@@ -61,7 +110,7 @@ def _fronts(x: Interval, z: Interval, y: float, columns: int, rows: int) -> tupl
     panels, handles = [], []
     for x0, x1 in pairwise(xs.tolist()):
         for z0, z1 in pairwise(zs.tolist()):
-            panels.append(box((x0 + 0.004, x1 - 0.004), (y, y + 0.018), (z0 + 0.004, z1 - 0.004)))
+            panels.append(bevelled((x0 + 0.004, x1 - 0.004), (y, y + 0.018), (z0 + 0.004, z1 - 0.004), 0.004))
             handles.append(_handle(x0, x1, z0, z1, y + 0.018))
     return merge(panels), merge(handles)
 
@@ -93,7 +142,9 @@ def cabinet(
         (
             Component("plinth", wood, box((-half + 0.02, half - 0.02), (0.0, body - 0.04), (0.0, plinth))),
             Component("body", wood, box((-half, half), (0.0, body), (plinth, height - 0.03))),
-            Component("top", wood, box((-half - 0.005, half + 0.005), (0.0, body + 0.02), (height - 0.03, height))),
+            Component(
+                "top", wood, bevelled((-half - 0.005, half + 0.005), (0.0, body + 0.02), (height - 0.03, height))
+            ),
             Component("fronts", front, panels),
             Component("handles", metal, handles),
         ),
@@ -103,30 +154,38 @@ def cabinet(
 
 
 def wardrobe(palette: Palette, rng: np.random.Generator) -> Piece:
-    doors = int(rng.integers(2, 5))
-    return cabinet("wardrobe", (0.5 * doors, 0.58, 2.1), (doors, 1), palette.oak, palette.lacquer, palette.metal)
+    doors, wood = int(rng.integers(2, 5)), _wood(palette, rng)
+    front = (palette.lacquer, palette.white, palette.walnut)[int(rng.integers(3))]
+    unit = cabinet("wardrobe", (0.5 * doors, 0.58, 2.1), (doors, 1), wood, front, palette.metal)
+    if rng.random() < 0.6:
+        return unit
+    x = float(rng.integers(doors)) * 0.5 - 0.25 * doors
+    glass = placed(picture(0.36, (0.2, 1.95), 0.5775), at=(x + 0.25, 0.0, 0.0))
+    return replace(unit, components=(*unit.components, Component("picture", palette.mirror, glass)))
 
 
 def dresser(palette: Palette, rng: np.random.Generator) -> Piece:
-    return cabinet(
-        "dresser", (float(rng.uniform(0.8, 1.1)), 0.45, 0.85), (2, 3), palette.walnut, palette.walnut, palette.metal
-    )
+    wood = _wood(palette, rng)
+    size = (float(rng.uniform(0.8, 1.2)), 0.45, float(rng.uniform(0.75, 0.95)))
+    return cabinet("dresser", size, (2, int(rng.integers(3, 5))), wood, wood, palette.metal)
 
 
-def nightstand(palette: Palette, _: np.random.Generator) -> Piece:
-    return cabinet("nightstand", (0.42, 0.38, 0.5), (1, 2), palette.walnut, palette.walnut, palette.metal)
+def nightstand(palette: Palette, rng: np.random.Generator) -> Piece:
+    wood = _wood(palette, rng)
+    return cabinet("nightstand", (0.42, 0.38, float(rng.uniform(0.45, 0.55))), (1, 2), wood, wood, palette.metal)
 
 
-def sideboard(palette: Palette, _: np.random.Generator) -> Piece:
-    return cabinet("sideboard", (1.4, 0.42, 0.8), (3, 1), palette.oak, palette.white, palette.metal)
+def sideboard(palette: Palette, rng: np.random.Generator) -> Piece:
+    width, front = float(rng.uniform(1.2, 1.6)), _wood(palette, rng)
+    return cabinet("sideboard", (width, 0.42, 0.8), (3, 1), palette.oak, front, palette.metal)
 
 
-def shoe_cabinet(palette: Palette, _: np.random.Generator) -> Piece:
-    return cabinet("shoe_cabinet", (0.75, 0.25, 0.9), (1, 3), palette.white, palette.oak, palette.metal)
+def shoe_cabinet(palette: Palette, rng: np.random.Generator) -> Piece:
+    return cabinet("shoe_cabinet", (0.75, 0.25, 0.9), (1, 3), palette.white, _wood(palette, rng), palette.metal)
 
 
-def tv_bench(palette: Palette, _: np.random.Generator) -> Piece:
-    return cabinet("tv_bench", (1.6, 0.42, 0.46), (3, 1), palette.walnut, palette.oak, palette.metal)
+def tv_bench(palette: Palette, rng: np.random.Generator) -> Piece:
+    return cabinet("tv_bench", (1.6, 0.42, 0.46), (3, 1), palette.walnut, _wood(palette, rng), palette.metal)
 
 
 def desk(palette: Palette, rng: np.random.Generator) -> Piece:
@@ -145,7 +204,7 @@ def desk(palette: Palette, rng: np.random.Generator) -> Piece:
             Component("fronts", palette.oak, panels),
             Component("handles", palette.metal, handles),
             Component("back", palette.oak, back),
-            Component("top", palette.oak, box((-half, half), (0.0, depth), (height - 0.03, height))),
+            Component("top", palette.oak, bevelled((-half, half), (0.0, depth), (height - 0.03, height))),
         ),
         tops=(Top((-half + 0.06, half - 0.06), (0.05, depth - 0.12), height),),
         front=0.6,

@@ -1,0 +1,1 @@
+"""Furniture that people modelled: catalogues in Sweet Home 3D's form, and pieces made of their models."""

@@ -1,0 +1,158 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+
+from slamgym.errors import ConfigError, SceneError
+from slamgym.scenes.house import Material
+from slamgym.scenes.importing.levels import lowest_storey
+from slamgym.scenes.importing.orientation import FORMATS, placed, placement
+from slamgym.scenes.importing.pieces import Piece
+from slamgym.scenes.importing.placed_options import PlacedOptions
+
+AUTO = PlacedOptions()
+# Rows: the world's axes, z up, in the file's frame: y up is a quarter turn about x, x up one about y.
+TURNED = {
+    "x": [[0, 0, -1], [0, 1, 0], [1, 0, 0]],
+    "y": [[1, 0, 0], [0, 0, -1], [0, 1, 0]],
+    "z": np.eye(3),
+}
+
+
+def box(name, low, high):
+    mesh = trimesh.creation.box(bounds=[low, high])
+    return Piece(name, Material(name), np.array(mesh.vertices, float), np.array(mesh.faces))
+
+
+def slab(name, low, high):
+    """Upper side of a box only, seen from above."""
+    (x0, y0, z), (x1, y1, _) = low, high
+    corners = np.array([[x0, y0, z], [x1, y0, z], [x1, y1, z], [x0, y1, z]], float)
+    return Piece(name, Material(name), corners, np.array([[0, 1, 2], [0, 2, 3]]))
+
+
+def flat():
+    """8 x 5 m, 2.5 m high, floor at z = 0; z up."""
+    return [
+        box("shell", (0, 0, 0), (8, 5, 2.5)),
+        box("table", (1, 1, 0), (2.5, 2, 0.75)),
+        box("shelf", (7, 1, 0), (8, 2, 2)),
+    ]
+
+
+def in_file(pieces, up, unit):
+    turn = np.array(TURNED[up], float)
+    return [replace(piece, vertices=piece.vertices @ turn / unit) for piece in pieces]
+
+
+@pytest.mark.parametrize("up", "xyz")
+@pytest.mark.parametrize("unit", [1.0, 0.01, 0.001, 0.0254, 0.3048])
+def test_axis_and_unit_are_seen(up, unit):
+    found = placement(in_file(flat(), up, unit), AUTO, FORMATS["obj"])
+    parts, turned = placed(in_file(flat(), up, unit), found.T_world_file)
+    assert np.linalg.det(found.T_world_file[:3, :3]) == pytest.approx(unit**3)
+    for part, piece in zip(parts, flat(), strict=True):
+        np.testing.assert_allclose(part.vertices, piece.vertices, atol=1e-5)
+    assert turned == ["turned inside out, as its floor looked down: 'shell'"]  # a box is seen from outside
+
+
+def test_what_was_taken_for_granted_is_told():
+    assert placement(in_file(flat(), "y", 0.01), AUTO, FORMATS["ply"]).assumptions == [
+        "up axis: y, seen in the geometry (.ply says z)",
+        "unit: 0.01 m, the centimetre, as a storey is 250 high",
+        "floor: at 0 m, a level surface of 100% of the rectangle",
+    ]
+    given = PlacedOptions(up="y", unit=0.01, floor=0.4)
+    assert placement(in_file(flat(), "y", 0.01), given, FORMATS["ply"]).assumptions == [
+        "up axis: y, as given",
+        "unit: 0.01 m, as given",
+        "floor: at 0.4 m, as given",
+    ]
+
+
+def test_a_cube_is_as_its_format_has_it():
+    cube = [box("room", (0, 0, 0), (3, 3, 3))]
+    for kind, up in (("glb", "y"), ("obj", "y"), ("ply", "z"), ("stl", "z")):
+        told = placement(cube, AUTO, FORMATS[kind]).assumptions[0]
+        assert told.startswith(f"up axis: {up}, as ")
+
+
+def test_glb_is_in_metres_also_in_a_tall_hall():
+    hall = [box("hall", (0, 0, 0), (30, 20, 9))]
+    assert placement(hall, AUTO, FORMATS["glb"]).assumptions[1] == "unit: 1 m, as a storey is 9.00 high"
+    assert placement(hall, AUTO, FORMATS["stl"]).assumptions[1] == "unit: 0.3048 m, the foot, as a storey is 9 high"
+
+
+def test_what_is_given_is_used():
+    found = placement(flat(), PlacedOptions(up="x", unit=2.0, floor=0.5), FORMATS["glb"])
+    corner = found.T_world_file @ [1.0, 2.0, 3.0, 1.0]
+    np.testing.assert_allclose(corner, [-6.0, 4.0, 1.5, 1.0])
+
+
+def test_the_floor_is_the_upper_side_of_the_lowest_slab():
+    two_storeys = [
+        box("slab", (0, 0, -0.3), (8, 5, 0.15)),
+        box("walls", (0, 0, 0.15), (8, 5, 2.85)),
+        box("ceiling", (0, 0, 2.75), (8, 5, 2.95)),
+        box("walls above", (0, 0, 2.95), (8, 5, 5.5)),
+        box("table", (1, 1, 0.15), (3, 2, 0.9)),
+    ]
+    storey = lowest_storey(np.concatenate([p.vertices[p.faces] for p in two_storeys]), axis=2)
+    assert storey.floor.height == pytest.approx(0.15)
+    assert storey.coverage == 1.0
+    assert storey.height == pytest.approx(2.6, abs=0.11)
+    T = placement(two_storeys, AUTO, FORMATS["stl"]).T_world_file
+    assert T[2, 3] == pytest.approx(-0.15)
+
+
+def test_a_floor_alone_is_a_scene_and_a_ball_is_none():
+    assert (
+        "floor: at 0.2 m" in placement([slab("floor", (0, 0, 0.2), (5, 5, 0.2))], AUTO, FORMATS["ply"]).assumptions[2]
+    )
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    piece = Piece("ball", Material("ball"), np.array(ball.vertices), np.array(ball.faces))
+    with pytest.raises(SceneError, match=r"no floor found: .* got 4% .* give the scene options up, unit and floor"):
+        placement([piece], AUTO, FORMATS["ply"])
+    assert placement([piece], PlacedOptions(floor=-1.0), FORMATS["ply"]).T_world_file[2, 3] == 1.0
+
+
+def test_a_floor_that_looks_down_is_turned_and_furniture_is_not():
+    floor = slab("floor", (0, 0, 0), (8, 5, 0))
+    inverted = replace(floor, faces=floor.faces[:, ::-1])
+    table = box("table", (1, 1, 0), (2, 2, 0.7))  # its underside, at the floor, looks down
+    parts, told = placed([inverted, table], np.eye(4))
+    assert told == ["turned inside out, as its floor looked down: 'floor'"]
+    assert (np.sort(parts[0].faces) == np.sort(floor.faces)).all()
+    corners = parts[0].vertices[parts[0].faces]
+    assert (np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0).all()
+    assert (parts[1].faces == table.faces).all()
+    assert placed([floor, table], np.eye(4))[1] == []
+
+
+def test_map_coordinates_keep_their_millimetres():
+    offset = np.array([500_000.0, 5_500_000.0, 320.0])
+    surveyed = [replace(piece, vertices=piece.vertices + offset) for piece in flat()]
+    found = placement(surveyed, AUTO, FORMATS["obj"])
+    part = placed(surveyed, found.T_world_file)[0][1]
+    np.testing.assert_allclose(np.ptp(part.vertices, axis=0), [1.5, 1.0, 0.75], atol=1e-5)
+    assert "moved by (-500004.00, -5500002.50) m, to the origin" in found.assumptions
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"up": "w"}, "up"),
+        ({"unit": 0.0}, "unit"),
+        ({"unit": "inch"}, "unit"),
+        ({"floor": "low"}, "floor"),
+        ({"ups": "z"}, "up"),
+    ],
+)
+def test_bad_options_are_told(options, message):
+    with pytest.raises(ConfigError, match=message):
+        PlacedOptions.checked(options)
+
+
+def test_options_may_come_as_text():
+    assert PlacedOptions.checked({"unit": "0.01", "floor": "-0.3"}) == PlacedOptions(unit=0.01, floor=-0.3)
