@@ -1,12 +1,14 @@
 """Scenes by name or file, and the registry of what loads them."""
 
+import os
+import sys
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from slamgym.errors import SceneError, SceneWarning, unknown_word
+from slamgym.errors import ConfigError, SceneError, SceneWarning, unknown_word
 from slamgym.plugins import load_class, named_targets
 from slamgym.scenes.house import House
 from slamgym.scenes.loader import SceneLoader, SceneOptions
@@ -23,6 +25,9 @@ ENTRY_POINTS = "slamgym.scenes"
 """Group of entry points by which installed packages add loaders of theirs."""
 
 PARTS = ("Options", "suffixes", "load")
+MOST_DIGITS = 18
+OURS = ("slamgym", "gymnasium")
+"""Packages whose lines a warning does not point at."""
 DEFECTS_TOLD = 5
 """Warnings about one scene, before the rest is only counted."""
 
@@ -49,17 +54,23 @@ def find_scene(spec: str, options: Mapping[str, Any] | None = None) -> SceneSour
         loader = _load_class(name, targets[name])
         source = _file(spec, rest) if loader.suffixes else _seed(spec, name, rest if colon else "0")
         return SceneSource(spec, loader, source, loader.Options.checked(options or {}))
+    if not (Path(spec).suffix or "/" in spec or os.path.lexists(spec)):
+        raise SceneError(unknown_word("scene", name, targets))
     endings: list[str] = []
+    broken: list[str] = []
     for known, target in targets.items():
-        loader = _load_class(known, target)
+        try:
+            loader = _load_class(known, target)
+        except ConfigError as error:  # another one may read it
+            broken.append(f" ({error})")
+            continue
         if loader.suffixes and spec.lower().endswith(loader.suffixes):
             return SceneSource(spec, loader, _file(spec, spec), loader.Options.checked(options or {}))
         endings += loader.suffixes
-    if Path(spec).suffix or "/" in spec:
-        raise SceneError(
-            f"scene {spec!r}: expected a file ending in one of {', '.join(endings)}; convert it to one of these"
-        )
-    raise SceneError(unknown_word("scene", name, targets))
+    raise SceneError(
+        f"scene {spec!r}: expected a file ending in one of {', '.join(endings)}; convert it to one of these"
+        + "".join(broken)
+    )
 
 
 def load_scene(spec: str, options: Mapping[str, Any] | None = None) -> House:
@@ -69,25 +80,46 @@ def load_scene(spec: str, options: Mapping[str, Any] | None = None) -> House:
     """
     found = find_scene(spec, options)
     house = found.loader.load(found.source, found.options)
-    for defect in house.defects[:DEFECTS_TOLD]:
-        warnings.warn(defect, SceneWarning, stacklevel=2)
+    told = list(house.defects[:DEFECTS_TOLD])
     if (more := len(house.defects) - DEFECTS_TOLD) > 0:
-        warnings.warn(f"scene {spec!r}: {more} more defects; `slamgym scene` lists all", SceneWarning, stacklevel=2)
+        told.append(f"scene {spec!r}: {more} more defects; `slamgym scene` lists all")
+    for defect in told:
+        warnings.warn(defect, SceneWarning, stacklevel=_users_level())
     return house
 
 
 def _seed(spec: str, name: str, seed: str) -> int:
-    if not (seed.isascii() and seed.isdigit()):
+    if not (seed.isascii() and seed.isdigit() and len(seed) <= MOST_DIGITS):
         raise SceneError(f"scene {spec!r}: expected a seed of 0 or more, got {seed!r}; write for example {name}:7")
     return int(seed)
 
 
 def _file(spec: str, file: str) -> Path:
-    path = Path(file).expanduser()
-    if not path.is_file():
-        raise SceneError(f"scene {spec!r}: expected a file, got {str(path)!r}, which is not there; check the path")
+    if not file:
+        raise SceneError(f"scene {spec!r}: expected a file; write for example {spec.partition(':')[0]}:FILE")
+    # As Path.expanduser, which raises when there is no such user.
+    path = Path(os.path.expanduser(file))  # noqa: PTH111
+    try:
+        there = path.is_file()
+    except OSError as error:
+        why = error.strerror
+        raise SceneError(f"scene {spec[:80]!r}: expected a file, got a name that cannot be one ({why})") from None
+    if not there:
+        what = "which is not there" if not path.exists() else "a folder" if path.is_dir() else "which is no plain file"
+        raise SceneError(f"scene {spec!r}: expected a file, got {str(path)!r}, {what}; check the path")
     return path
 
 
+def _users_level() -> int:
+    """How many calls up from the caller's the line is that asked for a scene: beyond slamgym and gymnasium."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in OURS:
+        level, frame = level + 1, frame.f_back
+    return level
+
+
 def _load_class(name: str, target: str) -> type[SceneLoader]:
-    return load_class(f"scene loader {name!r}", target, PARTS, "slamgym.scenes.loader.SceneLoader", SceneOptions)
+    loader = load_class(f"scene loader {name!r}", target, PARTS, "slamgym.scenes.loader.SceneLoader", SceneOptions)
+    if not isinstance(loader.suffixes, tuple):
+        raise ConfigError(f"scene loader {name!r}: expected suffixes as a tuple of texts, got {loader.suffixes!r}")
+    return loader

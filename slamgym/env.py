@@ -16,7 +16,8 @@ from slamgym.geometry import mast_camera_pose
 from slamgym.params import DriveParams, SlamInLoopParams, split_params
 from slamgym.render import Renderer
 from slamgym.robot import DifferentialDrive
-from slamgym.stage import load_stage
+from slamgym.scenes.house import House
+from slamgym.stage import Stage, load_stage
 from slamgym.types import FloatArray, Summary
 
 Observation = dict[str, Any]
@@ -63,6 +64,7 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         )
         self._renderer: Renderer | None = None
         self._robot: DifferentialDrive | None = None
+        self._house: House | None = None
 
     @staticmethod
     def _check(params: dict[str, Any]) -> tuple[DriveParams, SlamInLoopParams | None]:
@@ -72,24 +74,15 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         super().reset(seed=seed)
         tour = _tour(options)
         path_seed, noise_seed = self.np_random.integers(2**63, size=2)
-        stage = load_stage(self.params)
+        self.stage = stage = load_stage(self.params)
         self.grid = stage.grid
         self.path: Path = plan_path(
             stage.grid, stage.free, self.params.path_length_m, np.random.default_rng(path_seed), tour=tour
         )
         self._noise_rng = np.random.default_rng(noise_seed)
-        if self._robot is None:
-            self._robot = DifferentialDrive(stage.house)
-        if self._renderer is None:
-            self._renderer = Renderer(
-                stage.house,
-                self.params.camera,
-                self.params.lighting,
-                self.params.brightness,
-                self.params.multisampling,
-            )
+        robot = self._enter(stage)
         x, y = self.path.xy[0]
-        self._state = self._before = self._robot.reset(x, y, self.path.heading_at(0.0))
+        self._state = self._before = robot.reset(x, y, self.path.heading_at(0.0))
         self._step = 0
         self._progress = 0.0
         self._distance = 0.0
@@ -134,6 +127,20 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
             self.path.xy,
             self.params.speed,
         )
+
+    def _enter(self, stage: Stage) -> DifferentialDrive:
+        """Take robot and renderer into the stage's house, the same ones as long as it is the same."""
+        params = self.params
+        if stage.house is not self._house:
+            self.close()
+        self._house = stage.house
+        if self._robot is None:
+            self._robot = DifferentialDrive(stage.house)
+        if self._renderer is None:
+            self._renderer = Renderer(
+                stage.house, params.camera, params.lighting, params.brightness, params.multisampling
+            )
+        return self._robot
 
     def _observe(self) -> Observation:
         """Render at the robot's pose, add the sensor's noise, and remember the true pose of the camera."""

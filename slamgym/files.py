@@ -59,7 +59,12 @@ def file_sha256(path: Path) -> str:
 
 def recorded_hash(path: Path) -> str:
     """So much of the file's SHA-256 as is recorded with a result: the first 12 hex digits. Raises OSError."""
-    return file_sha256(path)[:_RECORDED_DIGITS]
+    return short_hash(file_sha256(path))
+
+
+def short_hash(sha256: str) -> str:
+    """So much of a SHA-256 in hex as is recorded with a result."""
+    return sha256[:_RECORDED_DIGITS]
 
 
 @contextmanager

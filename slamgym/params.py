@@ -10,7 +10,6 @@ from slamgym.camera import CAMERAS, PinholeCamera, resolve_camera
 from slamgym.checked_params import Params
 from slamgym.errors import ConfigError, unknown_word
 from slamgym.eval.robustness import MapPolicy
-from slamgym.files import recorded_hash
 from slamgym.render import MAX_BRIGHTNESS, Lighting, Multisampling
 from slamgym.scenes.registry import SceneSource, find_scene
 from slamgym.slam.backend import SlamConfig, load_backend
@@ -90,11 +89,6 @@ class DriveParams(Params):
     def recorded(self) -> dict[str, Any]:
         """All parameters, the scene's options resolved."""
         return {**self.model_dump(), "scene_options": self.scene_source().options.model_dump()}
-
-    def versions(self) -> dict[str, str]:
-        """What a drive depends on besides the parameters: hashes of files."""
-        files = {"scene": self.scene_source().source, "occupancy_map": self.occupancy_map}
-        return {f"{name}_sha256": recorded_hash(file) for name, file in files.items() if isinstance(file, Path)}
 
     @property
     def top_turn_rate(self) -> float:

@@ -1,6 +1,8 @@
 """Classes by name: those of slamgym, and those that installed packages add by entry points."""
 
+import sys
 from collections.abc import Mapping, Sequence
+from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Any
@@ -11,8 +13,13 @@ from slamgym.errors import ConfigError
 
 def named_targets(registry: Mapping[str, str], group: str) -> dict[str, str]:
     """Name -> "module:class" of the registry, which goes before, and of the installed packages' entry points."""
-    installed = {entry.name: entry.value for entry in entry_points(group=group) if entry.name not in registry}
-    return {**registry, **installed}
+    return {**registry, **{name: target for name, target in _installed(group, tuple(sys.path)) if name not in registry}}
+
+
+@cache
+def _installed(group: str, _: tuple[str, ...]) -> list[tuple[str, str]]:
+    """Names and targets of entry points; looking through all packages takes a while, so once for each search path."""
+    return [(entry.name, entry.value) for entry in entry_points(group=group)]
 
 
 def load_class(what: str, target: str, parts: Sequence[str], protocol: str, options: type[Params]) -> type[Any]:

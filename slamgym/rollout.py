@@ -161,7 +161,7 @@ def _episode(env: RobotEnv, agent: Agent, seed: int, steps: tuple[Step, ...], en
 def _config(env: RobotEnv, robot: HomeRobotEnv, agent: Agent, seed: int) -> dict[str, Any]:
     """Keywords of `gym.make` at the top level, so that the drive can be repeated; all else below `run`."""
     slam = env.get_wrapper_attr("slam_config")() if env.has_wrapper_attr("slam_config") else {}
-    versions = {"slamgym": version("slamgym"), **robot.params.versions(), **slam.pop("slam_versions", {})}
+    versions = {"slamgym": version("slamgym"), **robot.stage.versions, **slam.pop("slam_versions", {})}
     return {
         "run": {
             "env_id": env.spec.id if env.spec is not None else None,

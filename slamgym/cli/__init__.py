@@ -1,8 +1,10 @@
 """The command line: parses, prints, exits. Nothing else in slamgym prints or exits."""
 
 import sys
+from collections import Counter
 from collections.abc import Callable
 from importlib import import_module
+from itertools import takewhile
 from typing import Any
 
 import tyro
@@ -49,6 +51,11 @@ def _refuse_repeated(arguments: list[str]) -> None:
     for flag in PAIRS_FLAGS:
         if (times := flags.count(flag)) > 1:
             raise ConfigError(f"{flag}: expected it once, got it {times} times; give all pairs after one")
+        if times:
+            after = arguments[flags.index(flag) + 1 :]
+            names = list(takewhile(lambda word: not word.startswith("--"), after))[::2]
+            if twice := [name for name, count in Counter(names).items() if count > 1]:
+                raise ConfigError(f"{flag}: expected each name once, got {twice[0]} twice; give one value")
 
 
 def _parsed(arguments: list[str]) -> Callable[[], None]:

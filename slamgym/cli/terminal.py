@@ -88,6 +88,7 @@ def progress_bar(done: str) -> Progress:
         TimeRemainingColumn(),
         console=notes,
         transient=True,
+        disable=not notes.is_terminal,  # else it leaves an empty line in a pipe
     )
 
 

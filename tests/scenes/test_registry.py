@@ -33,6 +33,18 @@ class Worn:
         return House("worn", (floor,), defects=tuple(f"defect {number}" for number in range(source)))
 
 
+class Sloppy(Worn):
+    suffixes = ".usd"  # type: ignore[assignment]
+
+
+def test_a_broken_loader_hides_no_other_and_is_told_where_none_reads_a_file(monkeypatch):
+    monkeypatch.setitem(SCENES, "broken", "no_such_module:Loader")
+    with pytest.raises(SceneError, match="did you mean 'procedural'"):
+        find_scene("procedurl")
+    with pytest.raises(SceneError, match="expected a file ending in .*no_such_module"):
+        find_scene("flat.usd")
+
+
 def test_a_seed_is_zero_unless_given():
     assert find_scene("procedural").source == 0
     assert find_scene("procedural:12").source == 12
@@ -51,7 +63,10 @@ def test_a_file_is_found_by_its_ending_or_by_the_loaders_name(tmp_path):
     assert find_scene(str(house)).loader.__name__ == "Suncg"
 
 
-@pytest.mark.parametrize("spec", ["procedural:", "procedural:abc", "procedural:-1", "procedural:1.5", "procedural:²"])
+@pytest.mark.parametrize(
+    "spec",
+    ["procedural:", "procedural:abc", "procedural:-1", "procedural:1.5", "procedural:²", "procedural:" + "9" * 5000],
+)
 def test_malformed_seed(spec):
     with pytest.raises(SceneError, match=r"expected a seed of 0 or more, got .*; write for example procedural:7"):
         load_scene(spec)
@@ -62,9 +77,22 @@ def test_unknown_name_names_the_closest():
         load_scene("proceedural:3")
 
 
-@pytest.mark.parametrize("spec", ["nowhere/flat.glb", "mesh:flat.glb", "mesh", "mesh:", "mesh:."])
-def test_missing_file(spec):
-    with pytest.raises(SceneError, match=r"expected a file, got '.*', which is not there"):
+@pytest.mark.parametrize(
+    ("spec", "told"),
+    [
+        ("nowhere/flat.glb", "expected a file, got '.*', which is not there"),
+        ("~nobody-here/flat.glb", "expected a file, got '.*', which is not there"),
+        ("mesh:flat.glb", "expected a file, got 'flat.glb', which is not there"),
+        ("mesh", "write for example mesh:FILE"),
+        ("mesh:", "write for example mesh:FILE"),
+        ("a" * 300 + ".glb", "got a name that cannot be one"),
+        ("mesh:.", "expected a file, got '.', a folder"),
+        ("mesh:/dev/null", "which is no plain file"),
+        (".", "expected a file ending in"),
+    ],
+)
+def test_missing_file(spec, told):
+    with pytest.raises(SceneError, match=told):
         find_scene(spec)
 
 
@@ -89,6 +117,7 @@ def test_defects_are_warned_of_and_the_sixth_is_only_counted(monkeypatch):
         caught.clear()
         load_scene("worn:7")
     assert {w.category for w in caught} == {SceneWarning}
+    assert {w.filename for w in caught} == {__file__}
     assert str(caught[-1].message).startswith("scene 'worn:7': 2 more defects")
 
 
@@ -108,6 +137,7 @@ def test_loader_of_an_installed_package_is_found(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("target", "message"),
     [
+        (f"{__name__}:Sloppy", "expected suffixes as a tuple of texts, got '.usd'"),
         ("no_such_module:Loader", "importable 'module:class', got ModuleNotFoundError"),
         ("slamgym.scenes.house:House", r"without \['Options', 'suffixes', 'load'\]"),
     ],
