@@ -4,8 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from slamgym.errors import SceneError
 from slamgym.scenes.house import House
-from slamgym.scenes.rasterise import MAX_CELLS, Raster, cut
+from slamgym.scenes.rasterise import Raster, cut
 from slamgym.types import BoolArray, FloatArray
 
 WALL_HEIGHTS_M = (1.8, 2.1)
@@ -21,7 +22,7 @@ WALL_THICKNESS_M = 0.6
 def indoors(house: House, resolution_m: float) -> tuple[Raster, BoolArray] | None:
     """A raster over the house, and the cells (ny, nx) of it that are in a room, or have walls on most sides.
 
-    None where neither rooms nor walls tell what is inside.
+    None where neither rooms nor walls tell what is inside. Raises SceneError for walls of too much detail.
     """
     corners = [part.vertices[part.faces].astype(np.float64) for part in house.parts]
     walls = cut(np.concatenate([np.zeros((0, 3, 3)), *corners]), 2, *WALL_HEIGHTS_M)
@@ -29,8 +30,9 @@ def indoors(house: House, resolution_m: float) -> tuple[Raster, BoolArray] | Non
     points = np.concatenate([walls[..., :2].reshape(-1, 2), bounds.reshape(-1, 2)])
     if len(points) == 0:
         return None
-    raster = Raster.over(points.min(axis=0), points.max(axis=0), resolution_m)
-    if raster.shape[0] * raster.shape[1] > MAX_CELLS:
+    try:
+        raster = Raster.over(points.min(axis=0), points.max(axis=0), resolution_m)
+    except SceneError:  # the sky as a dome: it tells nothing, and the floor may still be of a house's size
         return None
     inside = _within(bounds, raster) | _enclosed(raster.touched(walls), resolution_m)
     # The ground between two rooms is that under a wall, or in a doorway.
@@ -40,10 +42,15 @@ def indoors(house: House, resolution_m: float) -> tuple[Raster, BoolArray] | Non
 def _within(bounds: FloatArray, raster: Raster) -> BoolArray:
     """Cells (ny, nx) whose centres are in one of the rectangles (R, 4): x_min, y_min, x_max, y_max."""
     x, y = (raster.origin_xy[axis] + (np.arange(raster.shape[1 - axis]) + 0.5) * raster.resolution_m for axis in (0, 1))
-    cells = np.zeros(raster.shape, dtype=bool)
-    for x_min, y_min, x_max, y_max in bounds:
-        cells |= ((y >= y_min) & (y <= y_max))[:, None] & ((x >= x_min) & (x <= x_max))
-    return cells
+    x_min, y_min, x_max, y_max = bounds.T
+    left, bottom = np.searchsorted(x, x_min), np.searchsorted(y, y_min)
+    right = np.maximum(np.searchsorted(x, x_max, side="right"), left)
+    top = np.maximum(np.searchsorted(y, y_max, side="right"), bottom)
+    # Counted at corners and summed up, so that a thousand rooms cost no more than one.
+    counts = np.zeros((len(y) + 1, len(x) + 1), dtype=np.int32)
+    for row, column, step in ((bottom, left, 1), (bottom, right, -1), (top, left, -1), (top, right, 1)):
+        np.add.at(counts, (row, column), step)
+    return counts.cumsum(axis=0).cumsum(axis=1)[:-1, :-1] > 0
 
 
 def _enclosed(walls: BoolArray, resolution_m: float) -> BoolArray:

@@ -2,10 +2,12 @@
 
 import re
 import struct
+import warnings
+from io import BytesIO
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from slamgym.errors import SceneError
 from slamgym.types import FloatArray
@@ -34,8 +36,7 @@ def decode_grey(content: bytes, max_pixels: int) -> FloatArray:
         return _decode_pgm(match[1] == b"P2", int(match[4]), content[match.end() :], (height, width))
     if match := _PNG.match(content):
         width, height = struct.unpack(">II", match[1])
-        _checked_size(width, height, max_pixels)
-        return _decode_png(content)
+        return _decode_png(content, _checked_size(width, height, max_pixels))
     raise SceneError(f"expected a PGM (P5, P2) or PNG image, got {content[:12]!r}...; convert it")
 
 
@@ -62,19 +63,22 @@ def _decode_pgm(plain: bool, largest: int, body: bytes, shape: tuple[int, int]) 
     return values.reshape(shape) / np.float64(largest)
 
 
-def _decode_png(content: bytes) -> FloatArray:
-    log = cv2.utils.logging
-    level = log.getLogLevel()
-    log.setLogLevel(log.LOG_LEVEL_SILENT)
+def _decode_png(content: bytes, size: tuple[int, int]) -> FloatArray:
     try:
-        image = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_UNCHANGED)
-    except cv2.error:
-        image = None
-    finally:
-        log.setLogLevel(level)
-    if image is None:
-        raise SceneError("expected a PNG image, got one that is cut off or damaged; save it again")
-    largest = 255 if image.dtype == np.uint8 else 65535
-    colours = image[..., :3].mean(axis=2) if image.ndim == 3 else image
-    transparent = image.ndim == 3 and image.shape[2] == 4 and image[..., 3] < largest
-    return np.where(transparent, np.nan, colours / np.float64(largest))
+        with warnings.catch_warnings(action="ignore"):  # of the sizes of further headers
+            Image.open(BytesIO(content), formats=("PNG",)).verify()  # to its end, which decoding does not look for
+            with Image.open(BytesIO(content), formats=("PNG",)) as image:
+                return _brightness(image, size)
+    except Exception as error:  # a broken file may fail in any way
+        why = " ".join(str(error).split())[:200]
+        raise SceneError(f"expected a PNG image, got one that is cut off or damaged ({why}); save it again") from None
+
+
+def _brightness(image: Image.Image, size: tuple[int, int]) -> FloatArray:
+    if image.size != size:
+        raise ValueError(f"two sizes, {size} and {image.size}")
+    if image.mode.startswith("I"):  # grey of 16 bits
+        return np.asarray(image) / np.float64(65535)
+    pixels = np.asarray(image.convert("RGBA" if image.has_transparency_data else "RGB"))
+    transparent = (pixels[..., 3:] < 255).any(axis=2)
+    return np.where(transparent, np.nan, pixels[..., :3].mean(axis=2) / 255)

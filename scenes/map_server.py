@@ -4,11 +4,11 @@ The format: http://wiki.ros.org/map_server. The image's first row is the one of 
 """
 
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 import yaml
-from pydantic import ConfigDict, Field, field_validator
+from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from slamgym.checked_params import Params
 from slamgym.errors import ConfigError, OutputError, SceneError
@@ -21,6 +21,9 @@ from slamgym.types import BoolArray, FloatArray
 
 FREE, OCCUPIED = 254, 0
 MAX_YAML_BYTES = 4096
+MAX_BRACKETS = 20
+"""Of a YAML file, where the origin takes one: thousands of open ones take PyYAML seconds."""
+MAX_ORIGIN_M = 1e6
 
 
 class MapDescription(Params):
@@ -34,7 +37,7 @@ class MapDescription(Params):
 
     image: str
     mode: Literal["trinary", "scale"] = "trinary"
-    resolution: float = Field(gt=0, le=10)
+    resolution: float = Field(ge=0.001, le=10)
     origin: tuple[float, float, float]
     negate: bool = False
     occupied_thresh: float = Field(0.65, ge=0, le=1)
@@ -42,23 +45,39 @@ class MapDescription(Params):
 
     @field_validator("origin")
     @classmethod
-    def _not_turned(cls, origin: tuple[float, float, float]) -> tuple[float, float, float]:
-        if origin[2] != 0:
-            raise ValueError(f"origin: expected a map that is not turned, yaw 0, got yaw {origin[2]}; turn its image")
+    def _near_and_not_turned(cls, origin: tuple[float, float, float]) -> tuple[float, float, float]:
+        x, y, yaw = origin
+        if max(abs(x), abs(y)) > MAX_ORIGIN_M:
+            raise ValueError(f"origin: expected metres, up to {MAX_ORIGIN_M:.0f}, got {x}, {y}; correct it")
+        if yaw != 0:
+            raise ValueError(f"origin: expected a map that is not turned, yaw 0, got yaw {yaw}; turn its image")
         return origin
+
+    @model_validator(mode="after")
+    def _free_is_brighter(self) -> Self:
+        if self.free_thresh > self.occupied_thresh:
+            raise ValueError(
+                f"free_thresh: expected at most occupied_thresh, {self.occupied_thresh}, got {self.free_thresh}; "
+                "lower it"
+            )
+        return self
 
 
 def write_map(grid: OccupancyGrid, path: Path) -> Path:
     """Write `path`, which ends in .yaml, and the image beside it, of the same name but .pgm; return `path`.
 
     Free cells are 254, occupied ones 0; no cell is unknown. The image comes first: where the YAML file is, all is.
-    Raises OutputError.
+    Raises OutputError, also for a cell or an origin that `read_map` would refuse.
     """
     if path.suffix not in (".yaml", ".yml"):
         raise OutputError(f"expected a map's name to end in .yaml, got {str(path)!r}; rename it")
     x, y = (float(value) for value in grid.origin_xy)
-    image = write_atomically(path.with_suffix(".pgm"), encode_pgm(np.where(grid.occupied, OCCUPIED, FREE)[::-1]))
-    description = MapDescription(image=image.name, resolution=grid.resolution_m, origin=(x, y, 0.0))
+    values = {"image": path.with_suffix(".pgm").name, "resolution": grid.resolution_m, "origin": (x, y, 0.0)}
+    try:
+        description = MapDescription.checked(values)
+    except ConfigError as error:
+        raise OutputError(f"cannot write map {path}: {error}") from None
+    write_atomically(path.with_suffix(".pgm"), encode_pgm(np.where(grid.occupied, OCCUPIED, FREE)[::-1]))
     content = {**description.model_dump(mode="json"), "negate": int(description.negate)}
     return write_atomically(path, yaml.safe_dump(content, sort_keys=False, default_flow_style=None))
 
@@ -80,6 +99,8 @@ def read_map(path: Path) -> OccupancyGrid:
 def _description(content: bytes) -> MapDescription:
     if len(content) > MAX_YAML_BYTES:
         raise SceneError(f"expected a YAML file of at most {MAX_YAML_BYTES} bytes, got {len(content)}")
+    if (brackets := content.count(b"[") + content.count(b"{")) > MAX_BRACKETS:
+        raise SceneError(f"expected YAML with at most {MAX_BRACKETS} opening brackets, got {brackets}; simplify it")
     try:
         # Nested references would unfold without end in the message that shows the value.
         if any(isinstance(token, yaml.AliasToken) for token in yaml.scan(content)):

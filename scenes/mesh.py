@@ -54,17 +54,32 @@ def _read(path: Path, options: PlacedOptions) -> House:
 
     kind = path.suffix.lower().lstrip(".")
     read = read_pieces(read_plain(path), kind, DataRoot(path.parent))
-    # Placed otherwise, its rooms and lamps would lie elsewhere.
-    extras = read_extras(read.extras) if options == PlacedOptions() else None
+    extras, unused = _extras(read.extras)
+    noted = list(read.assumptions)
+    if extras is not None and not _lies_as_ours(options):  # they would lie elsewhere
+        extras = None
+        noted.append("rooms, lamps and windows of the file: not used, as up, unit or floor are given otherwise")
     pieces, cleaned = clean(read.pieces)
     if not pieces:
-        told = "; ".join(cleaned) or "the file has none"
+        told = "; ".join((*read.defects, *cleaned)) or "the file has none"
         raise SceneError(f"expected triangles, got none that can be used ({told}); export it again")
     T_world_file, assumptions = placement(pieces, options if extras is None else OURS, FORMATS[kind])
     parts, turned = placed(pieces, T_world_file)
-    defects = tuple(f"{path.name}: {defect}" for defect in (*read.defects, *cleaned, *turned))
-    house = House(str(path), tuple(parts), assumptions=(*assumptions, *read.assumptions), defects=defects)
+    defects = tuple(f"{path.name}: {defect}" for defect in (*read.defects, *unused, *cleaned, *turned))
+    house = House(str(path), tuple(parts), assumptions=(*assumptions, *noted), defects=defects)
     return house if extras is None else _completed(house, extras)
+
+
+def _lies_as_ours(options: PlacedOptions) -> bool:
+    return all(getattr(options, name) in ("auto", ours) for name, ours in OURS)
+
+
+def _extras(given: object) -> tuple[Extras | None, list[str]]:
+    """What can be used of a file's extras, and a line about what cannot."""
+    try:
+        return read_extras(given), []
+    except SceneError as error:
+        return None, [f"extras: {error}; not used"]
 
 
 def _completed(house: House, extras: Extras) -> House:

@@ -10,7 +10,7 @@ from scipy import ndimage
 from slamgym.errors import SceneError
 from slamgym.scenes.house import House
 from slamgym.scenes.indoors import indoors
-from slamgym.scenes.rasterise import MAX_CELLS, Raster, cut
+from slamgym.scenes.rasterise import Raster, cut
 from slamgym.types import BoolArray, FloatArray, IntArray
 
 FLOOR_TOLERANCE_M = 0.03
@@ -45,14 +45,17 @@ def occupancy_grid(house: House, robot_height: float, resolution_m: float = 0.05
     `robot_height` metres above it, or when there is no floor within 0.03 m of z = 0.
 
     So is all that lies outside the house, where rooms or walls tell what is inside (see `indoors`): the robot stays in.
-    Raises SceneError when there is no floor at all, or one so large that the house cannot be in metres.
+    Raises SceneError when there is no floor at all, when it is so large that the house cannot be in metres, for corners
+    that are not finite, and for more detail than takes seconds.
     """
-    triangles = _solid_triangles(house)
-    floor = _floor(triangles, house.name)
-    found = indoors(house, resolution_m)
-    raster, inside = found if found is not None else (_over(floor, resolution_m, house.name), np.True_)
-    occupied = raster.touched(cut(triangles, 2, FLOOR_TOLERANCE_M, robot_height))
-    return OccupancyGrid(occupied | ~(raster.touched(floor) & inside), raster.origin_xy, resolution_m)
+    try:
+        triangles = _solid_triangles(house)
+        floor = _floor(triangles)
+        raster, inside = indoors(house, resolution_m) or (_over(floor, resolution_m), np.True_)
+        occupied = raster.touched(cut(triangles, 2, FLOOR_TOLERANCE_M, robot_height))
+        return OccupancyGrid(occupied | ~(raster.touched(floor) & inside), raster.origin_xy, resolution_m)
+    except SceneError as error:
+        raise SceneError(f"scene {house.name!r}: {error}") from None
 
 
 def free_space(grid: OccupancyGrid, radius_m: float) -> BoolArray:
@@ -79,9 +82,12 @@ def free_space(grid: OccupancyGrid, radius_m: float) -> BoolArray:
 
 
 def _solid_triangles(house: House) -> FloatArray:
-    """Corners (F, 3, 3) of all that a robot bumps into."""
+    """Corners (F, 3, 3) of all that a robot bumps into; raises SceneError where one is not finite."""
     corners = [part.vertices[part.faces].astype(np.float64) for part in house.parts if part.solid]
-    return np.concatenate(corners) if corners else np.zeros((0, 3, 3))
+    triangles = np.concatenate([np.zeros((0, 3, 3)), *corners])
+    if not np.isfinite(triangles).all():
+        raise SceneError("expected corners at finite places, got infinite ones or none at all; repair the scene's mesh")
+    return triangles
 
 
 def _normal_z(triangles: FloatArray) -> FloatArray:
@@ -90,23 +96,16 @@ def _normal_z(triangles: FloatArray) -> FloatArray:
     return cast(FloatArray, normals[:, 2] / np.maximum(np.linalg.norm(normals, axis=1), 1e-12))
 
 
-def _floor(triangles: FloatArray, name: str) -> FloatArray:
+def _floor(triangles: FloatArray) -> FloatArray:
     """What faces up near z = 0, triangles (F, 3, 3); raises SceneError when nothing does."""
     floor = cut(triangles[_normal_z(triangles) > MIN_FLOOR_NORMAL_Z], 2, -FLOOR_TOLERANCE_M, FLOOR_TOLERANCE_M)
     if len(floor) == 0:
         raise SceneError(
-            f"no floor in scene {name!r}: expected an upward-facing surface within {FLOOR_TOLERANCE_M} m of z = 0; "
+            f"no floor: expected an upward-facing surface within {FLOOR_TOLERANCE_M} m of z = 0; "
             "move the scene so that its floor is there"
         )
     return floor
 
 
-def _over(floor: FloatArray, resolution_m: float, name: str) -> Raster:
-    lower, upper = floor[..., :2].min(axis=(0, 1)), floor[..., :2].max(axis=(0, 1))
-    raster = Raster.over(lower, upper, resolution_m)
-    if raster.shape[0] * raster.shape[1] > MAX_CELLS:
-        raise SceneError(
-            f"scene {name!r} is too large: expected at most {MAX_CELLS} cells of {resolution_m} m, got a floor of "
-            f"{upper[0] - lower[0]:.0f} x {upper[1] - lower[1]:.0f}; check that it is in metres"
-        )
-    return raster
+def _over(floor: FloatArray, resolution_m: float) -> Raster:
+    return Raster.over(floor[..., :2].min(axis=(0, 1)), floor[..., :2].max(axis=(0, 1)), resolution_m)

@@ -61,7 +61,7 @@ def furnished_house(name: str, seed: int, options: HomeOptions, made: Made = mad
     return House(name, parts, rooms, tuple(lamps), tuple(daylight(plan)))
 
 
-_PICTURES = {"small": 16, "medium": 26, "large": 44}
+_PICTURES = {"small": 22, "medium": 36, "large": 60}
 
 
 def _numbered(pieces: Iterable[Piece]) -> Iterator[Part]:

@@ -1,5 +1,6 @@
 """Procedural homes with furniture that people modelled: Debian's package sweethome3d-furniture, or other catalogues."""
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
@@ -7,8 +8,7 @@ from typing import ClassVar
 from pydantic import field_validator
 
 from slamgym.errors import unknown_word
-from slamgym.scenes.furniture_catalogue.catalogue import LICENCES, read_catalogue
-from slamgym.scenes.furniture_catalogue.showroom import Showroom
+from slamgym.scenes.furniture_catalogue.licences import LICENCES
 from slamgym.scenes.house import House
 from slamgym.scenes.loader import SceneOptions
 from slamgym.scenes.procedural import HomeOptions, furnished_house
@@ -46,9 +46,13 @@ class SweetHome:
         Raises SceneError for a negative seed, and where no catalogue is installed. Whose models stand in it is in the
         house's assumptions, as their licences ask for.
         """
+        # trimesh and javaproperties take a while to import, and every loader is asked for its suffixes.
+        from slamgym.scenes.furniture_catalogue.catalogue import read_catalogue
+        from slamgym.scenes.furniture_catalogue.showroom import Showroom
+
         assert isinstance(source, int)
         assert isinstance(options, SweetHomeOptions)
-        catalogue = read_catalogue(Path(options.catalogue).expanduser())
+        catalogue = read_catalogue(Path(os.path.expanduser(options.catalogue)))  # noqa: PTH111  pathlib's raises for nobody's home
         allowed = _words(options.licences)
         showroom = Showroom([model for model in catalogue.models if model.licence.split()[0].strip(":") in allowed])
         house = furnished_house(f"sweethome:{source}", source, options, showroom.made)

@@ -21,10 +21,12 @@ LONGEST_NAME = 24
 
 
 class RoomOutline(Protocol):
-    """What is drawn of a room: its name, and its bounds on the floor, metres."""
+    """What is drawn of a room: its name and kind, and its bounds on the floor, metres."""
 
     @property
     def name(self) -> str: ...
+    @property
+    def kind(self) -> str: ...
     @property
     def x_min(self) -> float: ...
     @property
@@ -39,7 +41,7 @@ def plot_floor_plan(
     grid: TopView, free: BoolArray, rooms: Sequence[RoomOutline], path_xy: FloatArray, views_xy: FloatArray
 ) -> Figure:
     """What is occupied (dark), floor too narrow or cut off for the robot (grey), where its centre can be (white, `free`
-    of the grid's shape), rooms by name, a path (P, 2), and numbered places of views (N, 2) on it, metres.
+    of the grid's shape), rooms by name and kind, a path (P, 2), and numbered places of views (N, 2) on it, metres.
     """
     height, width = np.array(grid.occupied.shape) * grid.resolution_m
     figure = new_figure(9.5, float(np.clip(9.0 * height / width, 3.0, 10.0)) + 0.8)
@@ -65,10 +67,16 @@ def _draw_room(axes: Axes, room: RoomOutline) -> None:
     size = room.x_max - room.x_min, room.y_max - room.y_min
     axes.add_patch(Rectangle((room.x_min, room.y_min), *size, fill=False, edgecolor="0.2", linewidth=0.8))
     axes.annotate(
-        plain(room.name.replace("_", " "), LONGEST_NAME), (room.x_min, room.y_max), (4, -4),
+        _label(room), (room.x_min, room.y_max), (4, -4),
         textcoords="offset points", va="top", fontsize=8, color="0.1",
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
     )  # fmt: skip
+
+
+def _label(room: RoomOutline) -> str:
+    """The name, and on a line of its own the kind where the name does not tell it."""
+    told = [room.name] if room.kind in room.name else [room.name, room.kind]
+    return "\n".join(plain(text.replace("_", " "), LONGEST_NAME) for text in told)
 
 
 def _draw_views(axes: Axes, views_xy: FloatArray) -> None:

@@ -9,15 +9,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from slamgym.files import check_free, write_atomically
 from slamgym.scenes.export.shared import pieces_of, png, y_up
 from slamgym.scenes.extras import extras_of
 from slamgym.scenes.house import House, Material, Part
-from slamgym.types import FloatArray
+from slamgym.scenes.importing.gltf_plain import SOLID, UNLIT
+from slamgym.scenes.srgb import linear_of_srgb
 
-UNLIT = "KHR_materials_unlit"
 FLOAT, UNSIGNED_INT = 5126, 5125
 VERTEX_BUFFER, INDEX_BUFFER = 34962, 34963
 _MAGIC, _JSON_CHUNK, _BINARY_CHUNK = b"glTF", b"JSON", b"BIN\0"
@@ -27,19 +27,14 @@ def write_glb(house: House, path: Path) -> Path:
     """Write a house as a .glb file, y up and in metres as glTF has it, and return its path.
 
     Colours of vertices are written, times the light where a part has some; its material is then marked as unlit, so
-    that viewers show what the robot sees. In a house without baked light that is what shines by itself: it is written
-    as emissive, too. Rooms, lamps, windows and whether the light is baked are in the scene's extras, see
-    `slamgym.scenes.extras`: slamgym reads the same house back, light above 1 cut off.
+    that viewers show what the robot sees. In a house without baked light that is what shines by itself: for viewers
+    that know no unlit materials it is written as emissive, too. Rooms, lamps, windows and whether the light is baked
+    are in the scene's extras, see `slamgym.scenes.extras`, and what is not solid in those of meshes: slamgym reads the
+    same house back, light above 1 cut off, and what shines as bright as it looks.
     Raises OutputError when there is another file at `path`, and SceneError for a house without faces.
     """
     check_free(path, "file")
     return write_atomically(path, _container(*_Document().filled(house)))
-
-
-def srgb_to_linear(colour: ArrayLike) -> FloatArray:
-    """Light of sRGB values, 1 for 1 (IEC 61966-2-1). glTF's factors are linear, slamgym's multiply sRGB values."""
-    c = np.asarray(colour, dtype=np.float64)
-    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
 
 
 class _Document:
@@ -55,8 +50,10 @@ class _Document:
     def filled(self, house: House) -> tuple[dict[str, Any], bytes]:
         self._baked = all(part.light is not None for part in house.parts)
         for name, piece in pieces_of(house).items():
-            mesh = self._add("meshes", {"name": name, "primitives": [self._primitive(part) for part in piece]})
-            self._add("nodes", {"name": name, "mesh": mesh})
+            for more in ({}, {"extras": {SOLID: False}}):
+                if primitives := [self._primitive(part) for part in piece if part.solid is not bool(more)]:
+                    mesh = self._add("meshes", {"name": name, "primitives": primitives, **more})
+                    self._add("nodes", {"name": name, "mesh": mesh})
         nodes = list(range(len(self.tree["nodes"])))
         self.tree["scenes"] = [{"name": house.name, "nodes": nodes, "extras": extras_of(house)}]
         if any("extensions" in material for material in self.tree["materials"]):
@@ -73,7 +70,7 @@ class _Document:
         if part.uv is not None:
             attributes["TEXCOORD_0"] = self._accessor(part.uv * (1, -1) + (0, 1), "VEC2", VERTEX_BUFFER)
         if (colour := _vertex_colour(part)) is not None:
-            attributes["COLOR_0"] = self._accessor(srgb_to_linear(colour), "VEC3", VERTEX_BUFFER)
+            attributes["COLOR_0"] = self._accessor(linear_of_srgb(colour), "VEC3", VERTEX_BUFFER)
         indices = self._accessor(part.faces.reshape(-1), "SCALAR", INDEX_BUFFER)
         material = self._material(part.material, part.light is not None)
         return {"attributes": attributes, "indices": indices, "material": material}
@@ -81,15 +78,18 @@ class _Document:
     def _material(self, material: Material, lit: bool) -> int:
         key = (id(material), lit)
         if key not in self._materials:
-            colour = [*srgb_to_linear(material.colour).tolist(), 1.0]
-            look: dict[str, Any] = {"baseColorFactor": colour, "metallicFactor": 0.0}
+            # glTF's factors are linear, slamgym's multiply sRGB values.
+            colour = linear_of_srgb(material.colour).tolist()
+            look: dict[str, Any] = {"baseColorFactor": [*colour, 1.0], "metallicFactor": 0.0}
             if material.texture is not None:
                 look["baseColorTexture"] = {"index": self._texture(material.texture)}
             item = {"name": material.name, "pbrMetallicRoughness": look, "doubleSided": True}
             if lit:
                 item["extensions"] = {UNLIT: {}}
             if lit and not self._baked:
-                item["emissiveFactor"] = colour[:3] if material.texture is None else [1.0, 1.0, 1.0]
+                item["emissiveFactor"] = colour
+                if material.texture is not None:
+                    item["emissiveTexture"] = look["baseColorTexture"]
             self._materials[key] = self._add("materials", item)
         return self._materials[key]
 

@@ -15,7 +15,8 @@ from slamgym.scenes.export.shared import file_name, pieces_of, png, y_up
 from slamgym.scenes.house import House, Part, Room
 from slamgym.types import FloatArray
 
-_SHELL = re.compile(r"(floor|wall|ceiling)(?![a-z_]*[a-z])")
+_SHELL = re.compile(r"(floor|wall|ceiling)(#.*|\d*([ _.-]\d+)*)", re.IGNORECASE)
+"""#: the SUNCG loader names rooms' parts by their nodes, whose ids may be any text."""
 _HIDE = {"floor": "hideFloor", "wall": "hideWalls", "ceiling": "hideCeiling"}
 _EDGE_M = 0.3
 """The middle of a wall may be this far outside of its room, which ends at the wall's face."""
@@ -24,8 +25,8 @@ _EDGE_M = 0.3
 def write_suncg(house: House, root: Path) -> Path:
     """Write a house in SUNCG's layout into the new folder `root`, and return the path of its house.json.
 
-    Pieces named floor, wall or ceiling belong to the room that they are in; each other piece is an Object with a model
-    of its own, standing at its origin. Baked light, lamps and windows have no place there, and the colours of a part's
+    Pieces named floor, wall or ceiling, numbered or not, belong to the room that they are in; each other piece is an
+    Object with a model of its own, standing at its origin. Baked light, lamps and windows have no place there, and the colours of a part's
     vertices become their mean. Raises OutputError when `root` holds files, SceneError for a house without faces.
     """
     check_free(root, "folder")
@@ -122,13 +123,13 @@ class _Layout:
 
 def _shell_of(name: str, piece: list[Part], rooms: Iterable[Room]) -> tuple[int, str] | None:
     """The room's number and "floor", "wall" or "ceiling" where a piece is that of a room; else None."""
-    if not (kind := _SHELL.match(name)):
+    if not (kind := _SHELL.fullmatch(name)):
         return None
     x, y = np.mean([(part.vertices.min(axis=0) + part.vertices.max(axis=0))[:2] / 2 for part in piece], axis=0)
     outside = [max(r.x_min - x, x - r.x_max, r.y_min - y, y - r.y_max) for r in rooms]
     if not outside or min(outside) > _EDGE_M:
         return None
-    return int(np.argmin(outside)), kind[1]
+    return int(np.argmin(outside)), kind[1].lower()
 
 
 def _stands_in(node: dict[str, Any], low: FloatArray, high: FloatArray) -> bool:

@@ -5,7 +5,6 @@ The keys are described in the user's guide of Sweet Home 3D's Furniture Library 
 
 import math
 import posixpath
-import re
 from collections import defaultdict
 from collections.abc import Mapping
 from functools import lru_cache
@@ -16,9 +15,9 @@ import javaproperties
 
 from slamgym.errors import SceneError
 from slamgym.scenes.furniture_catalogue.archive import open_archive, read_entry
+from slamgym.scenes.furniture_catalogue.licences import short_name
 
 PROPERTIES = "PluginFurnitureCatalog.properties"
-LICENCES = ("CC0", "CC-BY", "other")
 MAX_PROPERTIES_BYTES = 4_000_000
 MAX_SIDE_M = 100.0
 MAX_WORDS = 200
@@ -116,7 +115,7 @@ def _model(entry: Mapping[str, str], path: Path, changed_ns: int, sizes: Mapping
         size_m=(_length(entry["width"]), _length(entry["depth"]), _length(entry["height"])),
         elevation_m=max(_metres(entry.get("elevation", "0")), 0.0),
         drop_on_top_m=drop if drop > 0.0 else None,
-        licence=_licence(entry.get("license", "")),
+        licence=short_name(entry.get("license", "")),
         creator=_line(entry.get("creator", "unknown")),
         archive=path,
         changed_ns=changed_ns,
@@ -153,20 +152,6 @@ def _rotation(text: str) -> Rotation:
     if len(values) != 9 or not all(abs(value) <= 1.0 + 1e-6 for value in values):
         raise ValueError(f"expected 9 numbers of a rotation, got {text[:80]!r}")
     return values  # type: ignore[return-value]
-
-
-def _licence(text: str) -> str:
-    """A licence's short name.
-
-    >>> _licence("Creative Commons Attribution 3.0 Unported license")
-    'CC-BY 3.0'
-    """
-    if re.search(r"public domain|cc-?0", text, re.IGNORECASE):
-        return "CC0"
-    attribution = re.search(r"attribution( \d\.\d)?", text, re.IGNORECASE)
-    if attribution and not re.search(r"non.?commercial|no.?deriv|share.?alike", text, re.IGNORECASE):
-        return f"CC-BY{attribution[1] or ''}"
-    return f"other: {_line(text)[:60]}" if text else "other"
 
 
 def _line(text: str) -> str:

@@ -13,10 +13,12 @@ from slamgym.errors import SceneError
 from slamgym.scenes.furniture_catalogue.archive import open_archive, read_entry
 from slamgym.scenes.furniture_catalogue.catalogue import Model
 from slamgym.scenes.furniture_catalogue.resolver import MATERIALS, ArchiveResolver
+from slamgym.scenes.home.colours import DARKEST
 from slamgym.scenes.home.furniture.piece import Component
 from slamgym.scenes.home.palette import Finish
 from slamgym.scenes.home.solids import Mesh
 from slamgym.scenes.house import Material
+from slamgym.scenes.importing.obj_text import as_utf8
 from slamgym.scenes.importing.pieces import Piece, pieces_of
 from slamgym.types import FloatArray
 
@@ -26,8 +28,8 @@ _CACHED = 256
 _CLEAR_SHARE = 0.3
 _CUT_SHARE = 0.02
 _HALF_CLEAR = 128
-_DARKEST, _LIGHTEST = 0.12, 0.93
-"""Range of plain colours, sRGB: models have pure black and white, homes do not."""
+_LIGHTEST = 0.93
+"""Of plain colours: models have pure white, homes do not."""
 _Z_UP = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
 """From a model's frame (y up, front to +z) to a piece's (z up, front to +y)."""
 
@@ -51,9 +53,10 @@ def shape_of(model: Model) -> Shape:
     """
     try:
         scene, missing = _read(model)
-        found = pieces_of(scene, linear=False)
         meshes = [mesh for mesh in scene.geometry.values() if isinstance(mesh, Trimesh)]
-        _check(meshes, found.pieces, found.defects)
+        cut_out = any(_is_cut_out(mesh) for mesh in meshes)  # pieces_of closes the images
+        found = pieces_of(scene, linear=False)
+        _check(meshes, found.pieces, found.defects, cut_out)
         A, low, extent = _box(model, np.concatenate([mesh.vertices for mesh in meshes]))
         components = tuple(
             _component(f"{number}", piece, (piece.vertices @ A.T - low) / extent)
@@ -70,14 +73,14 @@ def shape_of(model: Model) -> Shape:
 def _read(model: Model) -> tuple[Scene, int]:
     with open_archive(model.archive) as archive:
         resolver = ArchiveResolver(archive, model.path)
-        data = BytesIO(read_entry(archive, model.path, MAX_MESH_BYTES))
+        data = BytesIO(as_utf8(read_entry(archive, model.path, MAX_MESH_BYTES)))
         scene = trimesh.load_scene(data, file_type="obj", resolver=resolver, process=False, group_material=True)
     if without := [why for why in resolver.missing if MATERIALS in why]:
         raise SceneError(without[0])
     return scene, len(resolver.missing)
 
 
-def _check(meshes: list[Trimesh], pieces: list[Piece], defects: list[str]) -> None:
+def _check(meshes: list[Trimesh], pieces: list[Piece], defects: list[str], cut_out: bool) -> None:
     if defects:
         raise SceneError(defects[0])
     triangles = sum(len(mesh.faces) for mesh in meshes)
@@ -90,7 +93,7 @@ def _check(meshes: list[Trimesh], pieces: list[Piece], defects: list[str]) -> No
     area = sum(mesh.area for mesh in meshes)
     if sum(_area(piece) for piece in pieces) < (1.0 - _CLEAR_SHARE) * area:
         raise SceneError("expected a model that hides what is behind it, got one of glass; choose another")
-    if any(_is_cut_out(mesh) for mesh in meshes):
+    if cut_out:
         raise SceneError("expected textures without holes, got one with clear parts; choose another")
 
 
@@ -121,7 +124,7 @@ def _box(model: Model, vertices: FloatArray) -> tuple[FloatArray, FloatArray, Fl
 def _component(number: str, piece: Piece, vertices: FloatArray) -> Component:
     name, texture = piece.material.name, piece.material.texture
     # The pictures in the catalogues show textures as they are, whatever colour their materials have.
-    colour = np.ones(3) if texture is not None else np.clip(piece.material.colour, _DARKEST, _LIGHTEST)
+    colour = np.ones(3) if texture is not None else np.clip(piece.material.colour, DARKEST, _LIGHTEST)
     material = Material(name, (float(colour[0]), float(colour[1]), float(colour[2])), texture)
     uv = np.zeros((len(vertices), 2)) if piece.uv is None else piece.uv.astype(np.float64)
     return Component(number, Finish(material), Mesh(vertices, piece.faces, uv))

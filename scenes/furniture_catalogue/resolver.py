@@ -7,6 +7,7 @@ from trimesh.resolvers import Resolver
 
 from slamgym.errors import SceneError
 from slamgym.scenes.furniture_catalogue.archive import read_entry
+from slamgym.scenes.importing.obj_text import as_utf8
 from slamgym.scenes.importing.textures import decode_texture
 
 MATERIALS = ".mtl"
@@ -29,8 +30,9 @@ class ArchiveResolver(Resolver):
         """
         try:
             data = read_entry(self.archive, normpath(join(self.folder, key.strip().replace("\\", "/"))))
-            if not key.lower().endswith(MATERIALS):
-                decode_texture(data)
+            if key.lower().endswith(MATERIALS):
+                return as_utf8(data, MATERIALS)
+            decode_texture(data)
         except SceneError as error:
             self.missing.append(str(error))
             raise

@@ -1,6 +1,8 @@
 """What every room gets beside its furniture: doors, curtains, radiators, switches, sockets, pictures."""
 
 from collections.abc import Iterator
+from functools import partial
+from itertools import islice
 
 import numpy as np
 
@@ -12,7 +14,8 @@ from slamgym.scenes.home.placement import DOOR_ZONE, Placed
 
 _AJAR_DEG = (64.0, 112.0)  # less would leave less than 0.75 m to pass
 _TRIES = 8
-_METRES_PER_SOCKET = 2.2
+_LARGE_M2 = 12.0
+_GROUPS = (1, 1, 2, 3, 3)  # pictures that hang together
 
 
 def doors(room: Furnisher, leaf: Piece) -> None:
@@ -69,7 +72,7 @@ def radiators(room: Furnisher) -> None:
 
 
 def electrics(room: Furnisher) -> None:
-    """A switch beside every doorway, sockets along the walls, an alarm, what the kind of room needs."""
+    """A switch beside every doorway, sockets on one to three walls, an alarm, what the kind of room needs."""
     layout = room.layout
     for wall, opening in layout.openings("door"):
         for s in (opening.centre + 0.66, opening.centre - 0.66):
@@ -77,10 +80,10 @@ def electrics(room: Furnisher) -> None:
                 switch = Placed(room.make(fixtures.light_switch), wall.yaw, wall.point(s, 0.001, 1.08))
                 if layout.put(switch):
                     break
-    for i, wall in enumerate(layout.planned.walls):
-        for _ in range(round(wall.length / _METRES_PER_SOCKET)):
-            room.hang(fixtures.socket, 0.32, [i])
     bounds = layout.planned.room
+    number = 1 if bounds.kind in ("hall", "bathroom") else 2 if layout.area < _LARGE_M2 else 3
+    for i in room.rng.permutation(4)[:number].tolist():
+        room.hang(fixtures.socket, 0.32, [i])
     if bounds.kind in ("kitchen", "bathroom"):
         room.hang(fixtures.vent, 2.3)
     else:
@@ -90,16 +93,29 @@ def electrics(room: Furnisher) -> None:
 
 
 def pictures(room: Furnisher, richness: float) -> None:
-    """Pictures at eye level, single or in rows, about one for every 3 m2, none twice in a house.
+    """Pictures at eye level, single or in groups, the more the larger the room is, none twice in a house.
 
     None in the bathroom; fewer where surfaces are plain.
     """
     if room.layout.planned.room.kind == "bathroom":
         return
-    wanted = round((2.0 + room.layout.area / 3.5) * (0.25 + 0.75 * min(richness, 1.5)))
-    for _ in range(wanted):
-        if (finish := next(room.household.pictures, None)) is None:
-            return
-        piece = decor.wall_picture(room.palette, room.rng, finish)
-        z = float(room.rng.uniform(1.25, 1.6))
-        room.layout.against_wall(piece, room.rng, z=z, margin=0.06, gap=0.002)
+    wanted = round((3.0 + room.layout.area / 3.0) * (0.25 + 0.75 * min(richness, 1.5)))
+    while finishes := list(islice(room.household.pictures, min(wanted, int(room.rng.choice(_GROUPS))))):
+        wanted -= len(finishes)
+        first, *others = (decor.wall_picture(room.palette, room.rng, f, small=i > 0) for i, f in enumerate(finishes))
+        z = float(room.rng.uniform(1.3, 1.6))
+        hang = partial(room.layout.against_wall, rng=room.rng, z=z, margin=0.02, gap=0.002)
+        if not hang(first, company=partial(_column_beside, others=others)):
+            for piece in others:
+                hang(piece)
+
+
+def _column_beside(first: Placed, others: list[Piece]) -> list[Placed]:
+    """Smaller pictures one above the other, on the right of the first."""
+    left = float(first.piece.bounds[0, 0]) - 0.05
+    tallest = max((float(np.ptp(piece.bounds[:, 2])) for piece in others), default=0.0)
+    step = tallest + 0.05
+    return [
+        first.beside(piece, left - float(piece.bounds[1, 0]), 0.0, step * (i - (len(others) - 1) / 2))
+        for i, piece in enumerate(others)
+    ]

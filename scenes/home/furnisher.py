@@ -59,12 +59,12 @@ class Furnisher:
                 for maker in self._some(makers, each):
                     self.layout.on_top(host, top, self.make(maker), self.rng)
 
-    def litter(self, makers: Sequence[Maker], number: float) -> None:
+    def litter(self, makers: Sequence[Maker], number: float, walls: Sequence[int] | None = None) -> None:
         """Small things on the floor by the walls, about `number`, where routes stay free; see `scatter`."""
-        self._later.append(lambda: self._litter(makers, number))
+        self._later.append(lambda: self._litter(makers, number, walls))
 
-    def _litter(self, makers: Sequence[Maker], number: float) -> None:
-        self.stand(*self._some(makers, number))
+    def _litter(self, makers: Sequence[Maker], number: float, walls: Sequence[int] | None) -> None:
+        self.stand(*self._some(makers, number), walls=walls)
 
     def _some(self, makers: Sequence[Maker], number: float) -> list[Maker]:
         """About `number` of the makers, times the household's clutter; none twice before all came once."""

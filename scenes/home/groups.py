@@ -18,7 +18,7 @@ def sofa_and_table(room: Furnisher) -> list[Placed]:
     for sofa in room.stand(sofas.sofa, walls=order):
         table = sofa.beside(room.make(tables.coffee_table), 0.0, 1.2)
         if room.layout.put(table):
-            room.scatter([table], clutter.ON_LIVING_TABLES, 4)
+            room.scatter([table], clutter.ON_LIVING_TABLES, 6)
         room.rug_at(sofa, 0.0, 1.4, (2.3, 1.5))
         return [sofa]
     return []
@@ -47,7 +47,7 @@ def dining_place(room: Furnisher, maker: Maker, seats: int) -> None:
         table = Placed(table_piece, float(room.rng.integers(4)) * np.pi / 2, (x, y, 0.0))
         chairs = _chairs_around(room, table, seats)
         if room.layout.put(table, *chairs, margin=0.2):
-            room.scatter([table], clutter.ON_DINING_TABLES, 0.9 * seats)
+            room.scatter([table], clutter.ON_DINING_TABLES, 1.3 * seats)
             return
 
 
@@ -144,5 +144,5 @@ def work_place(room: Furnisher) -> None:
                 )
             )
         room.layout.put(desk.beside(room.make(desktop.keyboard), -0.1, 0.48, top))
-        room.scatter([desk], clutter.ON_DESKS, 5)
+        room.scatter([desk], clutter.ON_DESKS, 7)
         room.layout.put(desk.beside(room.make(fixtures.pinboard), 0.0, -0.012, 1.65))

@@ -90,7 +90,7 @@ class _Painter:
     def paints(self, walls: list[Colour]) -> tuple[Finish, ...]:
         """The last is as smooth as walls get, and gives a camera next to nothing to hold on to."""
         chips = [self.surface(f"woodchip {i}", textures.woodchip(self.rng, walls[i]), 1.6) for i in range(3)]
-        return *chips, self.surface("paint", textures.plaster(self.rng, walls[2]), 2.0)
+        return *chips, self.surface("paint", textures.plaster(self.rng, walls[2], contrast=0.018), 2.0)
 
     def papers(self, walls: list[Colour], cloth: list[Colour]) -> tuple[Finish, ...]:
         return (
@@ -114,23 +114,23 @@ def make_palette(rng: np.random.Generator, richness: float = 1.0, number_of_pict
         oak=p.surface("oak", textures.wood(rng, p.some(colours.LIGHT_WOODS)[0]), 0.9, 0.4),
         walnut=p.surface("walnut", textures.wood(rng, p.some(colours.DARK_WOODS)[0]), 0.9, 0.4),
         lacquer=p.surface("lacquer", _painted(p, colours.DOORS), 1.2, 0.4),
-        white=p.surface("white", textures.plaster(rng, (232, 230, 225), 256), 1.0),
-        trim=p.surface("trim", textures.plaster(rng, (238, 236, 230), 256), 1.5),
-        ceiling=p.surface("ceiling", textures.plaster(rng, (240, 239, 235), 512, 0.015), 3.0),
+        white=p.surface("white", textures.plaster(rng, (246, 244, 240), 256), 1.0),
+        trim=p.surface("trim", textures.plaster(rng, (248, 246, 242), 256), 1.5),
+        ceiling=p.surface("ceiling", textures.plaster(rng, (248, 247, 244), 512, 0.015), 3.0),
         facade=p.surface("facade", textures.plaster(rng, (205, 196, 180), 256, 0.05), 2.0),
         metal=_plain("metal", (0.42, 0.43, 0.45)),
-        black=_plain("black", (0.025, 0.025, 0.028)),
-        glass=_plain("dark glass", (0.012, 0.014, 0.018)),
+        black=_plain("black", (colours.DARKEST,) * 3),
+        glass=_plain("dark glass", (colours.DARKEST, 0.13, 0.14)),
         glow=_plain("lamp glow", (1.0, 0.95, 0.86)),
-        porcelain=_plain("porcelain", (0.83, 0.83, 0.82)),
+        porcelain=_plain("porcelain", (0.92, 0.92, 0.91)),
         counter=p.surface("counter", textures.marble(rng, p.some(colours.COUNTERS)[0]), 0.8, 0.4),
         fronts=p.surface("fronts", _painted(p, colours.FRONTS), 1.1),
-        linen=p.surface("linen", textures.fabric(rng, (232, 228, 218)), 0.6),
-        blanket=p.surface("blanket", _bedding(p, cloth), 1.3),
-        curtain=p.surface("curtain", textures.checked(rng, (206, 194, 172), cloth[1]), 0.9),
+        linen=p.surface("linen", textures.fabric(rng, (238, 234, 226)), 0.6),
+        blanket=p.surface("blanket", _patterned(p, (226, 216, 200), cloth[0]), 1.3),
+        curtain=p.surface("curtain", _patterned(p, (232, 222, 202), cloth[1]), 0.9),
         sofa=p.surface("sofa", textures.fabric(rng, cloth[2]), 0.6),
         leaves=p.surface("leaves", textures.leaves(rng), 0.3, 0.5),
-        soil=_plain("soil", (0.05, 0.035, 0.025)),
+        soil=_plain("soil", (0.17, 0.135, colours.DARKEST)),
         clay=p.surface("clay", textures.plaster(rng, (176, 104, 74), 128, 0.06), 0.5, 0.5),
         books=_picture("books", prints.book_spines(rng)),
         labels=_picture("labels", prints.labels(rng)),
@@ -149,7 +149,7 @@ def make_palette(rng: np.random.Generator, richness: float = 1.0, number_of_pict
         plain_walls=p.paints(walls),
         papered_walls=p.papers(walls, cloth),
         wall_tiles=p.surface(
-            "wall tiles", textures.tiles(rng, p.some(colours.WALL_TILES)[0], 8, variation=0.03), 1.6, 0.4
+            "wall tiles", textures.tiles(rng, p.some(colours.WALL_TILES)[0], 8, variation=0.05), 1.6, 0.4
         ),
         wood_floor=p.surface("wood floor", floor(rng, floors[0]), 2.4, 0.4),
         carpet_floor=p.surface("carpet", textures.carpet(rng, p.some(colours.CARPETS)[0]), 1.8),
@@ -158,11 +158,10 @@ def make_palette(rng: np.random.Generator, richness: float = 1.0, number_of_pict
     )
 
 
-def _bedding(p: _Painter, cloth: list[Colour]) -> Image:
-    pale = (214, 204, 186)
-    if p.rng.random() < 0.5:
-        return textures.checked(p.rng, cloth[0], pale)
-    return wallpapers.floral_wallpaper(p.rng, pale, cloth[0], 256)
+def _patterned(p: _Painter, pale: Colour, dye: Colour) -> Image:
+    """Cloth for beds and windows: checked, or printed with flowers or lozenges."""
+    pattern = (textures.checked, wallpapers.floral_wallpaper, wallpapers.geometric_wallpaper)[int(p.rng.integers(3))]
+    return pattern(p.rng, pale, dye, 256)
 
 
 def _painted(p: _Painter, choices: tuple[Colour, ...]) -> Image:

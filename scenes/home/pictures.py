@@ -15,7 +15,7 @@ WORDS = ("JAZZ", "NORD", "OPERA", "PARIS", "CINEMA", "MUSEUM", "OSLO", "EXPO", "
 FONTS = (cv2.FONT_HERSHEY_DUPLEX, cv2.FONT_HERSHEY_TRIPLEX, cv2.FONT_HERSHEY_COMPLEX)
 
 
-def random_ink(rng: np.random.Generator, low: int = 20, high: int = 235) -> tuple[int, int, int]:
+def random_ink(rng: np.random.Generator, low: int = 10, high: int = 250) -> tuple[int, int, int]:
     """A muted, warm colour: printers' inks and dyes are never as pure as random numbers."""
     pure = rng.integers(low, high, 3)
     r, g, b = (np.array([1.0, 0.97, 0.9]) * (0.6 * pure + 0.4 * pure.mean())).astype(int).tolist()
@@ -121,12 +121,12 @@ PICTURES: tuple[Callable[[np.random.Generator], Image], ...] = (abstract, landsc
 
 
 DYES: tuple[Colour, ...] = (
-    (132, 52, 46),
-    (44, 62, 92),
-    (202, 182, 146),
-    (104, 108, 82),
-    (74, 50, 44),
-    (178, 124, 76),
+    (128, 42, 38),
+    (30, 44, 74),
+    (222, 204, 168),
+    (96, 104, 74),
+    (54, 34, 30),
+    (190, 130, 74),
 )
 
 
@@ -144,7 +144,7 @@ def rug(rng: np.random.Generator, size: int = 512) -> Image:
     for x, y, radius in ((size // 2, size // 2, 84), (size // 2, 150, 44), (size // 2, size - 150, 44)):
         for share in (1.0, 0.8, 0.6, 0.35):
             figure(rng, image, (x, y), int(radius * share), inks)
-    return aged(rng, tinted((255, 255, 255), image / 255.0 - 1.0 + 0.06 * noise(rng, size, 0.5, 6.0)[..., None]))
+    return aged(rng, tinted((255, 255, 255), image / 255.0 - 1.0 + 0.08 * noise(rng, size, 0.6, 6.0)[..., None]))
 
 
 def figure(rng: np.random.Generator, image: Image, at: tuple[int, int], radius: int, inks: list[Colour]) -> None:

@@ -11,7 +11,7 @@ from slamgym.scenes.home.textures import Image
 def _cloth(rng: np.random.Generator) -> NDArray[np.float64]:
     """A binding's colour: one of the dyes, paler or darker, or anything muted."""
     dye = np.array(DYES[int(rng.integers(len(DYES)))] if rng.random() < 0.6 else random_ink(rng, 25, 215))
-    return np.asarray(dye * rng.uniform(0.6, 1.2))
+    return np.asarray(np.minimum(dye * rng.uniform(0.3, 1.4), 255.0))
 
 
 SPINES = (4, 24)
@@ -32,7 +32,7 @@ def book_spines(rng: np.random.Generator, size: int = 512) -> Image:
 
 def _letter_spine(rng: np.random.Generator, spine: Image) -> None:
     height, width = spine.shape[:2]
-    ink = random_ink(rng, 170, 255) if spine[0, 0].mean() < 130 else random_ink(rng, 10, 80)
+    ink = random_ink(rng, 190, 255) if spine[0, 0].mean() < 130 else random_ink(rng, 5, 60)
     for y in rng.integers(4, height - 8, int(rng.integers(1, 4))).tolist():
         spine[y : y + int(rng.integers(2, 6))] = random_ink(rng)
     y, end = int(rng.integers(14, 40)), int(rng.integers(height // 2, height - 12))

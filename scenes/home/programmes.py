@@ -1,6 +1,8 @@
 """What stands in which kind of room."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+
+import numpy as np
 
 from slamgym.scenes.home import groups
 from slamgym.scenes.home.furnisher import Furnisher
@@ -8,6 +10,7 @@ from slamgym.scenes.home.furniture import (
     bathroom,
     beds,
     clutter,
+    coats,
     decor,
     fixtures,
     kitchenware,
@@ -19,13 +22,20 @@ from slamgym.scenes.home.furniture import (
     tables,
 )
 from slamgym.scenes.home.furniture.piece import Maker
+from slamgym.scenes.home.placement import Placed
+
+_WIDE_M = 2.0  # from which furniture may stand on both sides
 
 
 def _stand_and_fill(
-    room: Furnisher, *makers: Maker, things: tuple[Maker, ...] = clutter.ON_CABINETS, each: float = 3
+    room: Furnisher,
+    *makers: Maker,
+    things: tuple[Maker, ...] = clutter.ON_CABINETS,
+    each: float = 4,
+    walls: Sequence[int] | None = None,
 ) -> None:
     """Puts pieces against walls, and small things on their tops."""
-    room.scatter([item for item in room.stand(*makers) if item.piece.tops], things, each)
+    room.scatter([item for item in room.stand(*makers, walls=walls) if item.piece.tops], things, each)
 
 
 def _living_room(room: Furnisher) -> None:
@@ -60,7 +70,7 @@ def _dining_room(room: Furnisher) -> None:
 
 def _kitchen(room: Furnisher) -> None:
     row = groups.kitchen_row(room)
-    room.scatter([unit for unit in row if unit.piece.tops], kitchenware.ON_KITCHEN_TOPS, 2)
+    room.scatter([unit for unit in row if unit.piece.tops], kitchenware.ON_KITCHEN_TOPS, 3)
     groups.dining_place(room, tables.kitchen_table, 2)
     _stand_and_fill(room, tables.sideboard, shelves.bookshelf, decor.plant, things=kitchenware.ON_KITCHEN_TOPS)
     room.hang(shelves.wall_shelf, 1.4)
@@ -120,19 +130,40 @@ def _bathroom(room: Furnisher) -> None:
 
 
 def _hall(room: Furnisher) -> None:
+    side = _one_side(room)
     _stand_and_fill(
         room,
         tables.shoe_cabinet,
-        decor.coat_rack,
+        coats.coat_rack,
         shelves.bookshelf,
         tables.shoe_cabinet,
-        decor.coat_rack,
         decor.plant,
         each=2,
+        walls=side,
     )
     room.hang(fixtures.wall_mirror, 1.5)
     room.hang(fixtures.key_hooks, 1.5)
-    room.litter(litter.IN_HALLS, 4)
+    room.litter(litter.IN_HALLS, 4, side)
+    if side is not None:
+        _lay_runner(room)
+
+
+def _lay_runner(room: Furnisher) -> None:
+    """A long rug in the middle of a narrow room."""
+    bounds = room.layout.planned.room
+    size = np.array([bounds.x_max - bounds.x_min, bounds.y_max - bounds.y_min])
+    width, depth = np.where(size == size.max(), 0.4, 0.55) * size
+    middle = ((bounds.x_min + bounds.x_max) / 2, (bounds.y_min + bounds.y_max) / 2, 0.0)
+    room.layout.lay(Placed(decor.rug(room.palette, room.rng, float(width), float(depth)), 0.0, middle))
+
+
+def _one_side(room: Furnisher) -> list[int] | None:
+    """The long wall of a narrow room with the fewest metres of doorways: a robot gets along the other; else None."""
+    walls = room.layout.planned.walls
+    if min(wall.length for wall in walls) >= _WIDE_M:
+        return None
+    free = [wall.length - sum(o.width for o in wall.openings) for wall in walls]
+    return [int(np.argmax(free))]
 
 
 PROGRAMMES: dict[str, Callable[[Furnisher], None]] = {

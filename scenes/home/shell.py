@@ -70,7 +70,7 @@ def _wall_finishes(plan: FloorPlan, palette: Palette, rng: np.random.Generator, 
     ]
 
 
-_PAPERED = {"living_room": 0.5, "bedroom": 0.6, "nursery": 0.5, "dining_room": 0.4, "kitchen": 0.0}
+_PAPERED = {"living_room": 0.5, "bedroom": 0.6, "nursery": 0.5, "dining_room": 0.4, "hall": 0.4, "kitchen": 0.0}
 
 
 def _floor_finish(kind: str, palette: Palette) -> Finish:

@@ -58,23 +58,23 @@ def woodchip(rng: np.random.Generator, colour: Colour, size: int = 512) -> Image
     """Painted ingrain wallpaper: chips of a few millimetres that stand out and throw a small shadow."""
     chips = np.clip(noise(rng, size, 0.4) - 0.9, 0.0, 1.5)
     relief = chips - np.roll(chips, (2, 1), axis=(0, 1))
-    return tinted(colour, 0.15 * relief + 0.015 * noise(rng, size, 0.5) + 0.018 * noise(rng, size, 1.8))
+    return tinted(colour, 0.19 * relief + 0.02 * noise(rng, size, 0.5) + 0.03 * noise(rng, size, 1.8))
 
 
 def _grain(rng: np.random.Generator, size: int) -> FloatArray:
     fine = noise(rng, size, 0.9, stretch=18.0)
     wide = noise(rng, size, 1.6, stretch=9.0)
     rings = np.sin(2.0 * np.pi * (2.2 * wide + np.linspace(0.0, 5.0, size, endpoint=False)[:, None]))
-    return 0.06 * fine + 0.05 * wide + 0.035 * rings
+    return 0.08 * fine + 0.06 * wide + 0.05 * rings
 
 
 def _knots(rng: np.random.Generator, size: int, count: int) -> FloatArray:
     tone = np.zeros((size, size))
     reach = np.arange(-size // 12, size // 12)
     for row, column in rng.integers(0, size, (count, 2)):
-        distance = np.hypot(reach / 2.2, reach[:, None]) / (rng.uniform(0.006, 0.012) * size)
+        distance = np.hypot(reach / 2.2, reach[:, None]) / (rng.uniform(0.007, 0.015) * size)
         knot = np.exp(-distance) * (1.0 + 0.4 * np.cos(5.0 * distance))
-        tone[np.ix_((row + reach) % size, (column + reach) % size)] -= rng.uniform(0.25, 0.5) * knot
+        tone[np.ix_((row + reach) % size, (column + reach) % size)] -= rng.uniform(0.35, 0.65) * knot
     return tone
 
 
@@ -85,15 +85,15 @@ def wood(rng: np.random.Generator, colour: Colour, size: int = 256) -> Image:
 
 def planks(rng: np.random.Generator, colour: Colour, rows: int = 16, size: int = 512) -> Image:
     """Floor boards along u, each with its own tone and grain, joints staggered at random."""
-    grain = _grain(rng, size) + _knots(rng, size, 26)
+    grain = _grain(rng, size) + _knots(rng, size, 36)
     tone = np.empty((size, size))
     edges = np.linspace(0, size, rows + 1).astype(int)
     for top, bottom in pairwise(edges.tolist()):
         joints = np.sort(rng.integers(0, size, 3))
         board = np.searchsorted(joints, np.arange(size)) % 3
-        tone[top:bottom] = np.roll(grain, rng.integers(size), axis=1)[top:bottom] + rng.normal(0.0, 0.1, 3)[board]
-        tone[top:bottom, joints] -= 0.3
-        tone[top] -= 0.22
+        tone[top:bottom] = np.roll(grain, rng.integers(size), axis=1)[top:bottom] + rng.normal(0.0, 0.15, 3)[board]
+        tone[top:bottom, joints] -= 0.4
+        tone[top] -= 0.32
     return tinted(colour, tone + 0.04 * noise(rng, size, 1.5))
 
 
@@ -104,15 +104,15 @@ def parquet(rng: np.random.Generator, colour: Colour, blocks: int = 8, size: int
     tone = np.empty((size, size))
     for row, column in np.ndindex(blocks, blocks):
         y, x = rng.integers(0, size - block, 2)
-        patch = grain[y : y + block, x : x + block] + np.repeat(rng.normal(0.0, 0.1, 4), stave)[:, None]
-        patch[::stave] -= 0.2
-        patch[:, 0] -= 0.2
+        patch = grain[y : y + block, x : x + block] + np.repeat(rng.normal(0.0, 0.14, 4), stave)[:, None]
+        patch[::stave] -= 0.28
+        patch[:, 0] -= 0.28
         rows, columns = slice(row * block, (row + 1) * block), slice(column * block, (column + 1) * block)
         tone[rows, columns] = patch if (row + column) % 2 else patch.T
     return tinted(colour, tone + 0.04 * noise(rng, size, 1.5))
 
 
-def tiles(rng: np.random.Generator, colour: Colour, count: int = 6, size: int = 512, variation: float = 0.05) -> Image:
+def tiles(rng: np.random.Generator, colour: Colour, count: int = 6, size: int = 512, variation: float = 0.08) -> Image:
     """Square ceramic tiles, marbled, each with its own tone, in pale grout."""
     cell = np.linspace(0, count, size, endpoint=False)
     row, column = np.floor(cell).astype(int)[:, None], np.floor(cell).astype(int)[None, :]
@@ -128,25 +128,25 @@ def tiles(rng: np.random.Generator, colour: Colour, count: int = 6, size: int = 
 
 def _veins(rng: np.random.Generator, size: int) -> FloatArray:
     ridge = 1.0 - np.minimum(np.abs(noise(rng, size, 1.9)) * 6.0, 1.0)
-    return 0.05 * noise(rng, size, 1.5) - 0.16 * ridge**2 * (noise(rng, size, 2.0) > 0.2)
+    return 0.07 * noise(rng, size, 1.5) - 0.28 * ridge**2 * (noise(rng, size, 2.0) > 0.2)
 
 
 def marble(rng: np.random.Generator, colour: Colour, size: int = 256) -> Image:
     """Clouds, veins and speckles: worktops, stone."""
-    speckles = np.where(noise(rng, size, 0.4) > 2.1, -0.25, 0.0)
+    speckles = np.where(noise(rng, size, 0.6) > 1.9, -0.4, 0.0)
     return tinted(colour, _veins(rng, size) + speckles + 0.02 * noise(rng, size, 0.2))
 
 
 def fabric(rng: np.random.Generator, colour: Colour, size: int = 256) -> Image:
     """Woven cloth: threads of uneven tone, a little worn."""
-    threads = rng.normal(0.0, 0.05, size)[:, None] + rng.normal(0.0, 0.05, size)[None, :]
-    return tinted(colour, threads + 0.07 * noise(rng, size, 0.5) + 0.05 * noise(rng, size, 1.4))
+    threads = rng.normal(0.0, 0.07, size)[:, None] + rng.normal(0.0, 0.07, size)[None, :]
+    return tinted(colour, threads + 0.11 * noise(rng, size, 0.6) + 0.08 * noise(rng, size, 1.4))
 
 
 def carpet(rng: np.random.Generator, colour: Colour, size: int = 512) -> Image:
     """Short pile, flecked, with trodden patches."""
-    flecks = np.where(noise(rng, size, 0.9) > 1.8, 0.22, 0.0)
-    return tinted(colour, 0.09 * noise(rng, size, 0.5) + 0.07 * noise(rng, size, 1.4) + flecks)
+    light, dark = (np.where(noise(rng, size, 0.9) > 1.8, tone, 0.0) for tone in (0.35, -0.35))
+    return tinted(colour, 0.12 * noise(rng, size, 0.6) + 0.09 * noise(rng, size, 1.4) + light + dark)
 
 
 def checked(rng: np.random.Generator, colour: Colour, other: Colour, size: int = 256) -> Image:

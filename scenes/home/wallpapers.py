@@ -13,26 +13,26 @@ from slamgym.types import FloatArray
 def striped_wallpaper(rng: np.random.Generator, colour: Colour, size: int = 512) -> Image:
     """Upright stripes of uneven width and tone on rough paper."""
     edges = np.sort(rng.choice(size, 18, replace=False))
-    tone = rng.normal(0.0, 0.035, len(edges) + 1)
+    tone = rng.normal(0.0, 0.08, len(edges) + 1)
     tone[-1] = tone[0]
     stripes = tone[np.searchsorted(edges, np.arange(size))][None, :]
-    return tinted(colour, stripes + 0.035 * noise(rng, size, 0.6) + 0.03 * noise(rng, size, 1.6))
+    return tinted(colour, stripes + 0.05 * noise(rng, size, 0.7) + 0.04 * noise(rng, size, 1.6))
 
 
 def floral_wallpaper(rng: np.random.Generator, colour: Colour, accent: Colour, size: int = 512) -> Image:
     """Flowers on stems, no two alike, scattered over pale paper."""
     image = plaster(rng, colour, size, 0.03)
-    cells = 6
+    cells = 8
     for row, column in np.ndindex(cells, cells):
         centre = (np.array([column + 0.5 * (row % 2), row]) + rng.uniform(0.2, 0.8, 2)) * size / cells
-        _wrapped(image, _flower(rng, centre, rng.uniform(0.035, 0.06) * size, colour, accent))
+        _wrapped(image, _flower(rng, centre, rng.uniform(0.028, 0.046) * size, colour, accent))
     return image
 
 
 def _flower(
     rng: np.random.Generator, centre: FloatArray, radius: float, paper: Colour, ink: Colour
 ) -> Callable[[Image, FloatArray], None]:
-    tones = [tuple(float(p + s * (i - p)) for p, i in zip(paper, ink, strict=True)) for s in rng.uniform(0.25, 0.6, 3)]
+    tones = [tuple(float(p + s * (i - p)) for p, i in zip(paper, ink, strict=True)) for s in rng.uniform(0.3, 0.85, 3)]
     petals, turn = int(rng.integers(4, 8)), rng.uniform(0.0, 2.0 * np.pi)
     bend = rng.uniform(-1.0, 1.0, 2) * radius
 
@@ -65,8 +65,8 @@ def geometric_wallpaper(rng: np.random.Generator, colour: Colour, accent: Colour
     cells = int(rng.integers(5, 8))
     y, x = np.mgrid[:size, :size] * cells / size
     a, b = (x + y) % cells, (x - y) % cells
-    tone = rng.uniform(0.0, 0.26, (cells, cells))[a.astype(int) % cells, b.astype(int) % cells]
+    tone = rng.uniform(0.0, 0.4, (cells, cells))[a.astype(int) % cells, b.astype(int) % cells]
     line = (np.minimum(a % 1.0, b % 1.0) < 0.05)[..., None]
-    share = np.where(line, 0.38, tone[..., None])
+    share = np.where(line, 0.65, tone[..., None])
     image = np.array(colour) * (1.0 - share) + np.array(accent) * share
     return tinted((255, 255, 255), image / 255.0 - 1.0 + 0.02 * noise(rng, size, 0.8)[..., None])

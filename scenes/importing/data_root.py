@@ -9,7 +9,10 @@ from slamgym.errors import SceneError
 
 MAX_FILE_BYTES = 1 << 30
 MAX_NAME_LENGTH = 1000
-URL_OR_DRIVE = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
+URL = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
+DRIVE = re.compile(r"[A-Za-z]:")
+UNDECODED = "\udc80-\udcff"
+"""Bytes in the name of a file that is not in UTF-8, as Python has them."""
 
 
 class DataRoot:
@@ -25,11 +28,13 @@ class DataRoot:
         """The place inside the root, links followed, of a file that another file names, there or not.
 
         name: as it is written in a file of the folder `base`, which is relative to the root; backslashes are slashes.
-        Raises SceneError for a URL and for a place outside the root.
+        Raises SceneError for a URL, for another machine's drive and for a place outside the root.
         """
-        if len(name) > MAX_NAME_LENGTH or not name.isprintable():
+        if len(name) > MAX_NAME_LENGTH or not re.sub(f"[{UNDECODED}]", "", name).isprintable():
             raise SceneError(f"expected the name of a file in {self.folder}, got {name[:60]!r}...; correct it")
-        if URL_OR_DRIVE.match(name):
+        if DRIVE.match(name):
+            raise SceneError(f"expected a file in {self.folder}, got {name!r}, which is not there; put it there")
+        if URL.match(name):
             raise SceneError(
                 f"expected a file in {self.folder}, got {name!r}; nothing is fetched, so put it there and name it"
             )

@@ -3,8 +3,9 @@
 Only what a flat picture needs is read: base colour and its texture (glTF), Kd, map_Kd, d and Tr (.mtl).
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -14,14 +15,15 @@ from trimesh.visual.material import PBRMaterial, SimpleMaterial
 
 from slamgym.errors import SceneError
 from slamgym.scenes.house import Material
-from slamgym.scenes.importing.textures import texture_of
+from slamgym.scenes.importing.textures import MAX_PIXELS, texture_of
+from slamgym.scenes.srgb import srgb_of_linear
 from slamgym.types import FloatArray
 
 PLAIN_COLOUR = (0.8, 0.8, 0.8)
 CLEAR_ALPHA = 0.5
-SHINING = 0.5
-"""Emissive factor from which on a surface is its own light: a bulb or a screen, not a glow."""
 DECODERS = 2
+MAX_ALL_PIXELS = 400_000_000
+"""Of all textures of a file together, before they are scaled down."""
 
 
 class Surface(NamedTuple):
@@ -36,6 +38,13 @@ PLAIN = Surface(Material("plain", PLAIN_COLOUR))
 """What has no material."""
 
 
+class _Texture(NamedTuple):
+    """pixels: as texture_of gives them. strongest: the largest alpha, in [0, 1]; None for an image without alpha."""
+
+    pixels: NDArray[np.uint8]
+    strongest: float | None
+
+
 class _Look(NamedTuple):
     """What a material says. colour: sRGB factors, None where it says nothing. blended: its alpha counts."""
 
@@ -44,18 +53,20 @@ class _Look(NamedTuple):
     alpha: float
     image: Image | None
     blended: bool
-    emissive: float
+    shines: bool
 
 
 def read_surfaces(materials: Mapping[str, object]) -> tuple[dict[str, Surface], list[str]]:
     """The surface of each geometry that has one of trimesh's materials, or None; and a line for each bad texture.
 
-    Geometries with one image have one texture array: what merges them by it may look at its identity.
+    Geometries with one image have one texture array: what merges them by it may look at its identity. The images are
+    closed, as large ones would stay in memory.
     """
     looks = {id(material): _look(material) for material in materials.values()}
     images = {id(look.image): look for look in looks.values() if look and look.image is not None}
     with ThreadPoolExecutor(DECODERS) as pool:
-        textures = dict(zip(images, pool.map(_texture, images.values()), strict=True))
+        decoded = pool.map(_texture, images.values(), _affordable([look.image for look in images.values()]))
+        textures = dict(zip(images, decoded, strict=True))
     defects = [
         f"texture of material {images[key].name!r} left out: {error}"
         for key, error in textures.items()
@@ -65,38 +76,40 @@ def read_surfaces(materials: Mapping[str, object]) -> tuple[dict[str, Surface], 
     return {name: found[id(material)] for name, material in materials.items()}, defects
 
 
-def srgb_of_linear(linear: FloatArray) -> FloatArray:
-    """SRGB values in [0, 1] of linear ones (IEC 61966-2-1)."""
-    curve = 1.055 * np.maximum(linear, 0.0031308) ** (1.0 / 2.4) - 0.055
-    return np.where(linear <= 0.0031308, 12.92 * linear, curve)
+def _affordable(images: Sequence[Image | None]) -> list[bool]:
+    """Which of a file's images can be decoded without more than MAX_ALL_PIXELS; too large ones are refused anyhow."""
+    sizes = [image.width * image.height for image in images if image is not None]
+    total = accumulate(size if size <= MAX_PIXELS else 0 for size in sizes)
+    return [pixels <= MAX_ALL_PIXELS for pixels in total]
 
 
-def _texture(look: _Look) -> NDArray[np.uint8] | SceneError:
+def _texture(look: _Look, affordable: bool) -> _Texture | SceneError:
     assert look.image is not None
+    if not affordable:
+        return SceneError(f"expected at most {MAX_ALL_PIXELS} pixels in all textures, got more; scale them down")
     try:
-        return texture_of(look.image, opaque=not look.blended)
+        pixels = texture_of(look.image, opaque=not look.blended)
+        has_alpha = look.blended and "A" in look.image.getbands()
+        return _Texture(pixels, float(np.asarray(look.image.getchannel("A")).max()) / 255.0 if has_alpha else None)
     except SceneError as error:
         return error
+    finally:
+        look.image.close()
 
 
-def _surface(look: _Look, textures: Mapping[int, NDArray[np.uint8] | SceneError]) -> Surface:
+def _surface(look: _Look, textures: Mapping[int, _Texture | SceneError]) -> Surface:
     read = textures.get(id(look.image))
-    texture = read if isinstance(read, np.ndarray) else None
+    texture, strongest = read if isinstance(read, _Texture) else (None, None)
     colour = np.ones(3) if texture is not None else np.array(PLAIN_COLOUR)
     if look.colour is not None and not (texture is not None and look.colour.max() == 0.0):
         # Exporters write a black Kd beside a texture and mean the texture.
         colour = np.clip(look.colour, 0.0, 1.0)
     material = Material(look.name, (float(colour[0]), float(colour[1]), float(colour[2])), texture)
-    return Surface(material, clear=_is_clear(look, texture), shines=look.emissive >= SHINING)
+    return Surface(material, clear=_is_clear(look, strongest), shines=look.shines)
 
 
-def _is_clear(look: _Look, texture: NDArray[np.uint8] | None) -> bool:
-    if not look.blended:
-        return False
-    if texture is None or look.image is None or "A" not in look.image.getbands():
-        return look.alpha < CLEAR_ALPHA
-    strongest = np.asarray(look.image.getchannel("A")).max() / 255.0
-    return bool(strongest * look.alpha < CLEAR_ALPHA)
+def _is_clear(look: _Look, strongest: float | None) -> bool:
+    return look.blended and look.alpha * (1.0 if strongest is None else strongest) < CLEAR_ALPHA
 
 
 def _look(material: object) -> _Look | None:
@@ -111,12 +124,9 @@ def _look_of_gltf(material: PBRMaterial) -> _Look:
     # Factors are linear and textures sRGB; as the curve between them is nearly a power, the product of a texture and
     # the factor's sRGB value is nearly the sRGB value of their linear product.
     colour = srgb_of_linear(factor[:3])
-    emissive = 0.0 if material.emissiveFactor is None else float(material.emissiveFactor.max())
-    if emissive >= SHINING and material.baseColorTexture is None:
-        colour = srgb_of_linear(np.clip(factor[:3] + material.emissiveFactor, 0.0, 1.0))
-    shining = emissive if material.emissiveTexture is None else 0.0
     blended = material.alphaMode in ("BLEND", "MASK")
-    return _Look(str(material.name), colour, float(factor[3]), material.baseColorTexture, blended, shining)
+    shines = material.emissiveFactor is not None  # see SHINES of gltf_plain
+    return _Look(str(material.name), colour, float(factor[3]), material.baseColorTexture, blended, shines)
 
 
 def _look_of_mtl(material: SimpleMaterial) -> _Look | None:
@@ -126,7 +136,7 @@ def _look_of_mtl(material: SimpleMaterial) -> _Look | None:
         return None
     colour = np.asarray(material.diffuse, dtype=np.float64).ravel()[:3] / 255.0 if "kd" in words else None
     alpha = _number(words.get("d"), 1.0) if "d" in words else 1.0 - _number(words.get("tr"), 0.0)
-    return _Look(str(material.name), colour, alpha, material.image, True, 0.0)
+    return _Look(str(material.name), colour, alpha, material.image, True, False)
 
 
 def _number(words: object, otherwise: float) -> float:

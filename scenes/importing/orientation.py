@@ -9,20 +9,26 @@ import numpy as np
 from slamgym.errors import SceneError
 from slamgym.scenes.house import Part
 from slamgym.scenes.importing.cleaning import triangles_of
-from slamgym.scenes.importing.levels import Storey, lowest_storey
+from slamgym.scenes.importing.levels import Storey, level_share, lowest_storey
 from slamgym.scenes.importing.pieces import Piece
-from slamgym.scenes.importing.placed_options import PlacedOptions
+from slamgym.scenes.importing.placed_options import UNITS, PlacedOptions
 from slamgym.types import FloatArray
 
 AXES = "xyz"
 SURE = 1.25
 """How much better than the format's another axis must look."""
+WALLS_ONLY = 0.1
+"""Share of the area that is level, below which a scene has walls and no floor."""
 LEAST_COVERAGE = 0.05
+LEAST_BELOW_M = 1.0
+BARE = 0.1
+LOW = 0.5
+"""Height of a storey by what lies below it: less than BARE, it is a roof; less than LOW and seen from below, too."""
 STOREY_M = (1.5, 6.5)
 USUAL_STOREY_M = 2.7
 TALLEST_OF_METRES = 20.0
 """What a .glb, which is in metres by its specification, may have as a hall."""
-UNITS = {"centimetre": 0.01, "millimetre": 0.001, "inch": 0.0254, "foot": 0.3048}
+UNIT_NAMES = {"cm": "centimetre", "mm": "millimetre", "inch": "inch", "foot": "foot"}
 FAR_M = 1000.0
 """From where on float32 is too coarse."""
 FLOOR_M = 0.03
@@ -61,12 +67,13 @@ def placement(pieces: Sequence[Piece], options: PlacedOptions, form: Format) -> 
     storeys = [lowest_storey(triangles, axis) for axis in range(3)]
     up, told_up = _up(storeys, triangles, options, form)
     storey = storeys[AXES.index(up)]
-    if options.floor == "auto" and (storey is None or storey.coverage < LEAST_COVERAGE):
-        raise SceneError(
-            f"no floor found: expected a level surface with {up} up ({told_up}), got {_coverage(storey):.0%} of the "
-            "scene's rectangle; give the scene options up, unit and floor"
-        )
     unit, told_unit = _unit(storey, options, form)
+    walls = _walls(triangles, AXES.index(up)) if options.up == "auto" else ""
+    if options.floor == "auto" and (instead := _instead_of_floor(storey, unit) or walls):
+        raise SceneError(
+            f"no floor found: expected a level surface with {up} up ({told_up}), got {instead}; give the scene options "
+            "up, unit and floor"
+        )
     floor_m = storey.floor.height * unit if options.floor == "auto" and storey else float(options.floor)
     told_floor = (
         "as given" if options.floor != "auto" else f"a level surface of {_coverage(storey):.0%} of the rectangle"
@@ -115,6 +122,27 @@ def _up(
     return form.up, f"as {form.name} has it"
 
 
+def _walls(triangles: FloatArray, up: int) -> str:
+    """That the scene may be walls without a floor, with another axis than `up` up; nothing when it may not.
+
+    It is one when nearly nothing is level then; but not one that is flat with `up` up, as a corridor or a hall is.
+    """
+    extents = np.ptp(triangles, axis=(0, 1))
+    others = [k for k in range(3) if k != up and extents[up] > LOW * extents[k]]
+    axes = [AXES[k] for k in others if level_share(triangles, k) < WALLS_ONLY]
+    return f"what may be walls with {axes[0]} up" if axes else ""
+
+
+def _instead_of_floor(storey: Storey | None, unit: float) -> str:
+    """What there is when it is no floor, a ceiling for example; else nothing. unit: metres."""
+    if storey is None or storey.coverage < LEAST_COVERAGE:
+        return f"{_coverage(storey):.0%} of the scene's rectangle"
+    least = (LOW if storey.floor.upward < 0.0 else BARE) * storey.below
+    if storey.below * unit >= LEAST_BELOW_M and storey.height <= least:
+        return f"one with {storey.height * unit:.3g} m above it and {storey.below * unit:.3g} m below it"
+    return ""
+
+
 def _unit(storey: Storey | None, options: PlacedOptions, form: Format) -> tuple[float, str]:
     """Metres of one unit, and why."""
     if options.unit != "auto":
@@ -123,7 +151,8 @@ def _unit(storey: Storey | None, options: PlacedOptions, form: Format) -> tuple[
     tallest = TALLEST_OF_METRES if form.metres else STOREY_M[1]
     if STOREY_M[0] <= height <= tallest:
         return 1.0, f"as a storey is {height:.2f} high"
-    fitting = {unit: name for name, unit in UNITS.items() if STOREY_M[0] <= height * unit <= STOREY_M[1]}
+    names = {UNITS[word]: name for word, name in UNIT_NAMES.items()}
+    fitting = {unit: name for unit, name in names.items() if STOREY_M[0] <= height * unit <= STOREY_M[1]}
     if not fitting:
         return 1.0, f"though a storey is {height:.2g} high, as no other unit fits"
     unit = min(fitting, key=lambda metres: abs(np.log(height * metres / USUAL_STOREY_M)))

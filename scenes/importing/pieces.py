@@ -13,8 +13,10 @@ from trimesh.visual import ColorVisuals, TextureVisuals
 
 from slamgym.errors import SceneError
 from slamgym.scenes.house import Material, Part
-from slamgym.scenes.importing.materials import PLAIN, Surface, read_surfaces, srgb_of_linear
+from slamgym.scenes.importing.gltf_plain import SOLID
+from slamgym.scenes.importing.materials import PLAIN, Surface, read_surfaces
 from slamgym.scenes.importing.names import listed
+from slamgym.scenes.srgb import srgb_of_linear
 from slamgym.types import FloatArray, IntArray
 
 MAX_TRIANGLES = 5_000_000
@@ -25,6 +27,7 @@ class Piece:
     """A Part whose vertices, float64 (V, 3), are still in the file's frame and unit; nothing in it is checked.
 
     faces: int64 (F, 3). uv: float32 (V, 2) or None. colour: float32 (V, 3) or None. shines: whether it needs no light.
+    solid: as in Part.
     """
 
     name: str
@@ -34,6 +37,7 @@ class Piece:
     uv: NDArray[np.float32] | None = None
     colour: NDArray[np.float32] | None = None
     shines: bool = False
+    solid: bool = True
 
     def part(self, T_world_file: FloatArray) -> Part:
         """The piece in the world; T_world_file (4, 4) may scale and mirror."""
@@ -46,6 +50,7 @@ class Piece:
             uv=self.uv,
             light=np.ones_like(vertices) if self.shines else None,
             colour=self.colour,
+            solid=self.solid,
         )
 
 
@@ -125,7 +130,9 @@ def _piece(name: str, mesh: Trimesh, surface: Surface, T: FloatArray, linear: bo
         material = _without_texture(material)
     if colour is not None and surface is PLAIN:
         material = Material("vertex colours")
-    return Piece(name, material, vertices, faces, None if material.texture is None else uv, colour, surface.shines)
+    uv = None if material.texture is None else uv
+    solid = mesh.metadata.get(SOLID) is not False
+    return Piece(name, material, vertices, faces, uv, colour, surface.shines, solid)
 
 
 def _without_texture(material: Material) -> Material:

@@ -8,9 +8,9 @@ import trimesh
 from trimesh.visual.material import PBRMaterial
 
 from slamgym.errors import SceneError
+from slamgym.scenes.importing import gltf_plain, obj_text
 from slamgym.scenes.importing.data_root import DataRoot
 from slamgym.scenes.importing.gltf_check import check_gltf, gltf_header, textured_materials
-from slamgym.scenes.importing.obj_text import with_absolute_indices
 from slamgym.scenes.importing.pieces import Pieces, pieces_of
 from slamgym.scenes.importing.resolver import RootResolver
 from slamgym.scenes.importing.texture_transform import with_transforms
@@ -24,11 +24,14 @@ def read_pieces(data: bytes, kind: str, root: DataRoot, base: str = "") -> Piece
     kind: "glb", "gltf", "obj", "ply" or "stl". root, base: where the files that it names are, see DataRoot. Raises
     SceneError, which does not name the file, and MemoryError.
     """
-    resolver = RootResolver(root, base)
+    if not data:
+        raise SceneError(f"expected a .{kind} file, got an empty file; export it again")
     try:
         header = gltf_header(data) if kind in GLTF else {}
         check_gltf(header)
-        data = with_absolute_indices(data) if kind == "obj" else data
+        data, header, changed = gltf_plain.prepared(data, header)
+        data, libraries = obj_text.prepared(data) if kind == "obj" else (data, [])
+        resolver = RootResolver(root, base, libraries, [buffer.get("uri") for buffer in header.get("buffers", ())])
         # trimesh must not merge or drop vertices: their uv and colours would go with them.
         scene = trimesh.load_scene(BytesIO(data), file_type=kind, resolver=resolver, process=False)
         found = pieces_of(scene, linear=kind in GLTF)
@@ -39,7 +42,8 @@ def read_pieces(data: bytes, kind: str, root: DataRoot, base: str = "") -> Piece
         why = " ".join(f"{type(error).__name__}: {error}".split())[:200]
         raise SceneError(f"expected a .{kind} file, got one that cannot be read ({why}); export it again") from None
     lost = [f"material {name!r} without its texture, which cannot be read" for name in _lost_textures(scene, header)]
-    return Pieces(pieces, noted + found.assumptions, resolver.failures + lost + found.defects, _extras(header))
+    assumptions = [*noted, *resolver.assumptions, *found.assumptions]
+    return Pieces(pieces, assumptions, [*resolver.failures, *lost, *changed, *found.defects], _extras(header))
 
 
 def _extras(header: Mapping[str, Any]) -> object:

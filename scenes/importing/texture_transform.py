@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from slamgym.scenes.importing.gltf_plain import TEXTURE_TRANSFORM, base_texture
 from slamgym.scenes.importing.pieces import Piece
 from slamgym.types import FloatArray
-
-EXTENSION = "KHR_texture_transform"
 
 
 def with_transforms(pieces: Sequence[Piece], header: Mapping[str, Any]) -> tuple[list[Piece], list[str]]:
@@ -27,8 +26,7 @@ def with_transforms(pieces: Sequence[Piece], header: Mapping[str, Any]) -> tuple
 
 def _transform(material: Mapping[str, Any]) -> FloatArray | None:
     """T (3, 3) of texture coordinates whose v runs down; first they are scaled, then turned, then moved."""
-    texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture", {})
-    given = texture.get("extensions", {}).get(EXTENSION)
+    given = base_texture(material).get("extensions", {}).get(TEXTURE_TRANSFORM)
     if given is None:
         return None
     angle, (su, sv), (tu, tv) = given.get("rotation", 0.0), given.get("scale", (1, 1)), given.get("offset", (0, 0))

@@ -11,12 +11,14 @@ from itertools import pairwise
 
 import numpy as np
 
+from slamgym.errors import SceneError
 from slamgym.scenes.house import House, Part
 from slamgym.scenes.light.direct import Lights, lights_of
 from slamgym.scenes.light.exposure import exposure_of
-from slamgym.scenes.light.facing import turned_to_view, viewpoints
+from slamgym.scenes.light.facing import turned_to_view
 from slamgym.scenes.light.illumination import Illumination, reflectances
 from slamgym.scenes.light.imagined_lamps import imagined_lamps
+from slamgym.scenes.light.places import places_in
 from slamgym.scenes.light.rays import rays_of, stacked
 from slamgym.scenes.light.refine import (
     CORNERS,
@@ -55,7 +57,8 @@ def bake_light(house: House, on_progress: Progress | None = None) -> House:
     """The house with `light` in every part, float32 (V, 3) in [0.05, 1.2], and vertices added where light changes.
 
     Parts that have their light already, such as panes and bulbs, shine: they keep it. Faces that are seen from behind
-    alone are turned over. on_progress: called with the share of the work that is done, 0 to 1.
+    alone are turned over. on_progress: called with the share of the work that is done, 0 to 1. Raises SceneError where
+    lamps or windows give no finite light.
     """
     report = on_progress or _ignore
     report(0.0)
@@ -63,14 +66,16 @@ def bake_light(house: House, on_progress: Progress | None = None) -> House:
     if not parts:
         return replace(house, parts=())
     rays = rays_of(parts)
-    places = viewpoints(rays, stacked(parts)[0][:, :2])
-    parts = turned_to_view(parts, places)
-    imagined = () if house.lamps or house.windows else imagined_lamps(places, rays)
+    vertices, faces = stacked(parts)
+    places = places_in(rays, vertices[faces.ravel()])
+    parts = turned_to_view(parts, places.everywhere)
+    imagined = () if house.lamps or house.windows else imagined_lamps(places.indoors, rays)
     assumed = (IMAGINED.format(len(imagined)),) if imagined else ()
     matt = [split_creases(part) for part in parts if part.light is None]
     if matt:
         shining = [part for part in parts if part.light is not None]
-        lit = iter(_lit(lights_of(parts, house.lamps or imagined, house.windows), matt, shining, places, report))
+        lights = lights_of(parts, house.lamps or imagined, house.windows)
+        lit = iter(_checked(_lit(lights, matt, shining, places.indoors, report)))
         parts = tuple(next(lit) if part.light is None else part for part in parts)
     report(1.0)
     return replace(house, parts=parts, assumptions=(*house.assumptions, *assumed))
@@ -93,6 +98,16 @@ def _lit(
         most -= int(edges.sum())
         surface, light = _finer(surface, light, edges, room, partial(_between, report, k, end))
     return separate(surface, matt, _smoothed(surface, exposure(light)).astype(np.float32))
+
+
+def _checked(parts: Sequence[Part]) -> Sequence[Part]:
+    for part in parts:
+        if part.light is not None and not np.isfinite(part.light).all():
+            raise SceneError(
+                f"expected finite light, got NaN or infinity in part {part.name!r}; lamps or windows of the house are the "
+                "cause: give them finite places and colours, and intensities of at most 1000"
+            )
+    return parts
 
 
 def _edges_to_cut(surface: Surface, factors: FloatArray, most: int) -> BoolArray:

@@ -4,10 +4,10 @@ import fcntl
 import hashlib
 import os
 import time
-import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from slamgym.errors import OutputError
 from slamgym.files import draft
+from slamgym.scenes.fingerprint import house_sha256
 from slamgym.scenes.house import House, Part
+from slamgym.scenes.importing.data_root import read_plain
 from slamgym.scenes.light.bake import bake_light
 
 VERSION = 2
@@ -25,10 +27,13 @@ MOST_BYTES = 2_000_000_000
 WAIT_S = 120.0
 """So long a process waits for another one that bakes the same house; then it bakes too."""
 
-STORED = {"vertices": 3, "faces": 3, "uv": 2, "colour": 3, "light": 3}
-"""Arrays of a part that are kept, and their columns; none are kept as no rows."""
+STORED = {
+    "vertices": (3, np.float32), "faces": (3, np.int32), "uv": (2, np.float32), "colour": (3, np.float32),
+    "light": (3, np.float32),
+}  # fmt: skip
+"""Arrays of a part that are kept, their columns and what these hold; none are kept as no rows."""
 
-Array = NDArray[np.generic]
+Array = NDArray[Any]
 
 
 def baked(house: House, on_progress: Callable[[float], None] | None = None) -> House:
@@ -60,23 +65,8 @@ def _folder() -> Path:
 
 
 def _key(house: House) -> str:
-    """SHA-256 of all that the light depends on, in hex."""
-    digest = hashlib.sha256(repr((VERSION, house.lamps, house.windows)).encode())
-    textures = {id(part.material.texture): part.material.texture for part in house.parts}
-    hashes = {key: _of_array(texture) for key, texture in textures.items()}
-    for part in house.parts:
-        digest.update(repr(tuple(map(float, part.material.colour))).encode() + hashes[id(part.material.texture)])
-        for array in (part.vertices, part.faces, part.uv, part.colour, part.light):
-            digest.update(_of_array(array))
-    return digest.hexdigest()
-
-
-def _of_array(array: Array | None) -> bytes:
-    if array is None:
-        return b"none"
-    digest = hashlib.sha256(repr((array.dtype.str, array.shape)).encode())
-    digest.update(np.ascontiguousarray(array).data)
-    return digest.digest()
+    """SHA-256 of the house and of what gives the light, in hex."""
+    return hashlib.sha256(f"{VERSION} {house_sha256(house)}".encode()).hexdigest()
 
 
 @contextmanager
@@ -112,41 +102,48 @@ def _read(file: Path, house: House) -> House | None:
     """The house with the light of the file, or None when there is none that can be read."""
     parts = [part for part in house.parts if len(part.faces)]
     try:
-        with np.load(file, allow_pickle=False) as stored:
-            pieces = [_split(stored[name], stored[f"{name}_ends"]) for name in STORED]
-            assumptions = tuple(stored["assumptions"].tolist())
+        with np.load(BytesIO(read_plain(file)), allow_pickle=False) as stored:
+            pieces = [_split(name, stored[name], stored[f"{name}_ends"]) for name in STORED]
+            assumptions = _texts(stored["assumptions"])
         lit = tuple(_stored(part, *arrays) for part, *arrays in zip(parts, *pieces, strict=True))
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+    except Exception:  # a damaged file may fail in any way, for want of memory too
         return None
     with suppress(OSError):
         os.utime(file)  # what is used is not removed as the oldest
     return replace(house, parts=lit, assumptions=(*house.assumptions, *assumptions))
 
 
-def _split(rows: Array, ends: Array) -> list[Array]:
-    if len(rows) != ends[-1]:
-        raise ValueError(f"expected {ends[-1]} rows, got {len(rows)}")
+def _split(name: str, rows: Array, ends: Array) -> list[Array]:
+    """The array of each part; raises ValueError for one that was not written so."""
+    columns, dtype = STORED[name]
+    if rows.dtype != dtype or rows.ndim != 2 or rows.shape[1] != columns or not np.isfinite(rows).all():
+        raise ValueError(f"expected finite {name} (N, {columns}) of {dtype}, got {rows.shape} of {rows.dtype}")
+    if ends.dtype.kind != "i" or ends.ndim != 1 or (np.diff(ends, prepend=0) < 0).any() or ends[-1] != len(rows):
+        raise ValueError(f"expected ends of parts that rise to {len(rows)}, got {ends}")
     return np.split(rows, ends[:-1])
 
 
+def _texts(array: Array) -> tuple[str, ...]:
+    if array.dtype.kind != "U" or array.ndim != 1:
+        raise ValueError(f"expected a list of texts, got {array.shape} of {array.dtype}")
+    return tuple(array.tolist())
+
+
 def _stored(part: Part, vertices: Array, faces: Array, uv: Array, colour: Array, light: Array) -> Part:
-    return replace(
-        part,
-        vertices=vertices.astype(np.float32, copy=False),
-        faces=faces.astype(np.int32, copy=False),
-        uv=uv.astype(np.float32, copy=False) if len(uv) else None,
-        colour=colour.astype(np.float32, copy=False) if len(colour) else None,
-        light=light.astype(np.float32, copy=False),
-    )
+    n = len(vertices)
+    if len(light) != n or not {len(uv), len(colour)} <= {0, n} or faces.min() < 0 or faces.max() >= n:
+        raise ValueError(f"expected light of {n} vertices, and faces of them, got others")
+    uv_or_none, colour_or_none = (array if len(array) else None for array in (uv, colour))
+    return replace(part, vertices=vertices, faces=faces, uv=uv_or_none, colour=colour_or_none, light=light)
 
 
 def _write(file: Path, lit: House, new_assumptions: Sequence[str]) -> None:
     """Keep the light, and remove the oldest files where there is too much."""
     arrays: dict[str, Any] = {"assumptions": np.array(new_assumptions, dtype=np.str_)}
-    for name, columns in STORED.items():
+    for name, (columns, dtype) in STORED.items():
         rows = [getattr(part, name) for part in lit.parts]
-        rows = [np.zeros((0, columns), np.float32) if array is None else array for array in rows]
-        arrays[name] = np.concatenate(rows)
+        rows = [np.zeros((0, columns), dtype) if array is None else array for array in rows]
+        arrays[name] = np.concatenate(rows).astype(dtype, copy=False)
         arrays[f"{name}_ends"] = np.cumsum([len(array) for array in rows])
     with suppress(OSError, OutputError):
         with draft(file) as place:

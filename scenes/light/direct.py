@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial.distance import cdist
 
 from slamgym.scenes.house import Lamp, Part, Window
 from slamgym.scenes.light.rays import Rays, rays_of, sphere
@@ -14,6 +15,12 @@ from slamgym.scenes.light.refine import unit
 from slamgym.types import BoolArray, FloatArray, IntArray
 
 LAMP_POINTS = 8
+MOST_LAMP_POINTS = 512
+"""Of all lamps together: so many lamps give soft shadows with fewer points each."""
+AT_1_M = 4.0
+"""Light of a lamp of intensity 1 at 1 m."""
+NEAREST_M = 0.5
+"""Nearer to a lamp its light grows no further."""
 FIXTURE_M = 0.3
 """Geometry this close to a lamp is its fixture and casts no shadow."""
 PANE = 8.0
@@ -24,7 +31,8 @@ PANE_CELLS = (2, 5)
 FITTING_M = 0.3
 FITTING_BESIDE_M = 1.0
 """What lies wholly so close to a window's plane, and so little beside it, is its frame, pane or curtain."""
-NEGLIGIBLE = 1e-3
+NEGLIGIBLE = 0.02
+"""Of the light that a point would have without shadows, the share that weak and far lights may be left out with."""
 
 
 class Lights(NamedTuple):
@@ -51,20 +59,39 @@ def _fits(part: Part, window: Window) -> bool:
 def direct_light(points: FloatArray, normals: FloatArray, lights: Lights) -> FloatArray:
     """Light (N, 3) of all lamps and windows at points (N, 3) with unit normals (N, 3)."""
     total = np.zeros((len(points), 3))
-    for lamp in lights.lamps:
-        total += _lamp_light(points, normals, lamp, lights.rays)[:, None] * np.asarray(lamp.colour)
-    for window in lights.windows:
-        total += _window_light(points, normals, window, lights.rays)[:, None] * np.asarray(window.colour)
+    noticed = _noticed(points, lights)
+    count = max(1, min(LAMP_POINTS, MOST_LAMP_POINTS // max(len(lights.lamps), 1)))
+    for lamp, near in zip(lights.lamps, noticed[: len(lights.lamps)], strict=True):
+        light = _lamp_light(points[near], normals[near], lamp, count, lights.rays)
+        total[near] += light[:, None] * np.asarray(lamp.colour)
+    for window, near in zip(lights.windows, noticed[len(lights.lamps) :], strict=True):
+        light = _window_light(points[near], normals[near], window, lights.rays)
+        total[near] += light[:, None] * np.asarray(window.colour)
     return total
 
 
-def _lamp_light(points: FloatArray, normals: FloatArray, lamp: Lamp, rays: Rays) -> FloatArray:
-    """Light (N,) of one lamp: inverse square, cosine law, and shadow rays to points of its sphere."""
+def _noticed(points: FloatArray, lights: Lights) -> list[IntArray]:
+    """Which of the points (N, 3) each lamp, then each window, may matter to; the others need no shadow rays."""
+    lamps, windows = lights.lamps, lights.windows
+    sides = np.array([(window.half_u, window.half_v) for window in windows]).reshape(-1, 2, 3)
+    areas = 4.0 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    places = np.array([*(lamp.position for lamp in lamps), *(window.centre for window in windows)]).reshape(-1, 3)
+    reach = np.array([*(lamp.radius for lamp in lamps), *np.linalg.norm(sides, axis=2).sum(axis=1)])
+    power = np.array([lamp.intensity * AT_1_M for lamp in lamps] + [PANE / np.pi * window.intensity for window in windows])
+    power[len(lamps) :] *= areas
+    most = power / np.maximum(cdist(points, places) - reach, NEAREST_M) ** 2
+    noticed = most > NEGLIGIBLE / max(len(power), 1) * most.sum(axis=1, keepdims=True)
+    return [np.flatnonzero(near) for near in noticed.T]
+
+
+def _lamp_light(points: FloatArray, normals: FloatArray, lamp: Lamp, count: int, rays: Rays) -> FloatArray:
+    """Light (N,) of one lamp: inverse square, cosine law, and shadow rays to so many points of its sphere."""
     total = np.zeros(len(points))
-    for source in np.asarray(lamp.position) + sphere(LAMP_POINTS) * lamp.radius:
+    spread = sphere(count) if count > 1 else np.zeros((1, 3))
+    for source in np.asarray(lamp.position) + spread * lamp.radius:
         towards, distance, cosine = _towards(points, normals, source)
-        light = lamp.intensity / LAMP_POINTS * cosine * 4.0 / np.maximum(distance, 0.5) ** 2
-        facing = np.flatnonzero(light > NEGLIGIBLE / LAMP_POINTS)
+        light = lamp.intensity / count * cosine * AT_1_M / np.maximum(distance, NEAREST_M) ** 2
+        facing = np.flatnonzero(light > 0.0)
         total[facing] += light[facing] * _free(points, towards, np.maximum(distance - FIXTURE_M, 0.0), facing, rays)
     return total
 
@@ -82,7 +109,7 @@ def _window_light(points: FloatArray, normals: FloatArray, window: Window, rays:
         towards, distance, cosine = _towards(points, normals, source)
         at_window = np.maximum(-towards @ inwards, 0.0)
         light = PANE * window.intensity * cosine * at_window * cell / (np.pi * distance**2 + cell)
-        facing = np.flatnonzero(light > NEGLIGIBLE / len(sources))
+        facing = np.flatnonzero(light > 0.0)
         total[facing] += light[facing] * _free(points, towards, distance, facing, rays)
     return total
 

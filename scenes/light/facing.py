@@ -1,48 +1,21 @@
-"""Which side of a surface is seen: the places where a camera could be, and faces wound the wrong way round."""
+"""Which side of a surface is seen from where cameras could be: faces wound the wrong way round are turned over."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from slamgym.scenes.house import Part
-from slamgym.scenes.light.rays import Rays, rays_of, sphere, stacked
+from slamgym.scenes.light.rays import Rays, rays_of, stacked
 from slamgym.scenes.light.refine import face_normals, unit
 from slamgym.types import BoolArray, FloatArray, IntArray
 
-GRID_M = 0.8
-GRID_MOST = 24
-"""Viewpoints along the longer side of the house; a wide one gets a wider grid."""
-HEIGHTS_M = (0.5, 1.2)
-LOOKS = 48
-ROOMY_M = 0.8
-"""A camera's place is free as far as this in the mean; the inside of furniture is not."""
-FAR_M = 4.0
 VOTERS = 12
 """Each point of a face is judged from so many nearest viewpoints."""
 LARGE_M2 = 0.1
 """Larger faces are judged at more points than their middle."""
 LIFT_M = 0.005
-
-
-def viewpoints(rays: Rays, plan: NDArray[np.floating]) -> FloatArray:
-    """Places (P, 3) where a camera could be: above a floor, with free space around.
-
-    plan: x and y (V, 2) of the house's vertices.
-    """
-    low, high = np.percentile(plan, (1, 99), axis=0) if len(plan) else np.zeros((2, 2))
-    step = max(GRID_M, float((high - low).max()) / GRID_MOST)
-    x, y = (np.arange(a + step / 2, b + 1e-6, step) for a, b in zip(low, high, strict=True))
-    places = np.stack(np.meshgrid(x, y, HEIGHTS_M, indexing="ij"), axis=-1).reshape(-1, 3)
-    looks = sphere(LOOKS)
-    distance = rays.first_hits(np.repeat(places, LOOKS, axis=0), np.tile(looks, (len(places), 1))).distance
-    distance = np.minimum(distance, FAR_M).reshape(-1, LOOKS)
-    floor = np.median(distance[:, looks[:, 2] < -0.5], axis=1) < FAR_M
-    roomy = (distance.mean(axis=1) > ROOMY_M) & (distance.min(axis=1) > 0.1)
-    free: FloatArray = places[floor & roomy]
-    return free
 
 
 def turned_to_view(parts: Sequence[Part], places: FloatArray) -> tuple[Part, ...]:

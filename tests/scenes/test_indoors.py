@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from slamgym.scenes.house import House, Material, Part, Room
-from slamgym.scenes.indoors import indoors
+from slamgym.scenes.indoors import _closed, indoors
 from slamgym.scenes.occupancy import free_space, occupancy_grid
 
 BOX_FACES = [
@@ -76,6 +76,19 @@ def test_rooms_tell_it_where_walls_are_hidden():
 def test_a_corridor_that_is_no_room_is_indoors_too():
     rooms = (Room("a", "living", -2.95, -1.95, -1, 1.95), Room("b", "kitchen", 1, -1.95, 2.95, 1.95))
     assert free_m2([GARDEN, *HOUSE], rooms) == pytest.approx(5.3 * 3.3, abs=2.0)
+
+
+def test_cells_in_rooms_are_those_whose_centres_are():
+    bounds = np.round(np.random.default_rng(0).uniform(-1, 6, (9, 4)), 2)  # some end before they begin
+    rooms = tuple(Room("r", "living", *map(float, room)) for room in [*bounds, (0.0, 0.0, 3.0, 2.0)])
+    raster, inside = indoors(House("test", (), rooms), 0.05)
+    y, x = ((np.arange(n) + 0.5) * 0.05 + o for n, o in zip(raster.shape, raster.origin_xy[::-1], strict=True))
+    expected = np.zeros(raster.shape, bool)
+    for room in rooms:
+        expected |= ((y >= room.y_min) & (y <= room.y_max))[:, None] & ((x >= room.x_min) & (x <= room.x_max))
+    # Gaps between rooms, as wide as walls, are closed besides.
+    assert inside[expected].all()
+    assert np.array_equal(inside, _closed(expected, 12.0))
 
 
 @pytest.mark.parametrize(

@@ -99,14 +99,24 @@ def test_bad_yaml(tmp_path, text):
     refuse(make(tmp_path, text=text), "YAML|image: the value should be a valid string|Field required")
 
 
+@pytest.mark.parametrize("bracket", "[{")
+def test_nested_yaml_is_not_parsed(tmp_path, bracket, monkeypatch):
+    monkeypatch.setattr(yaml, "scan", None)
+    refuse(make(tmp_path, text="image: " + bracket * 2000), "at most 20 opening brackets, got 2000")
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"resolution": 0}, "resolution: .*greater than 0, got 0"),
+        ({"resolution": 0}, "resolution: .*0.001, got 0"),
+        ({"resolution": 1e-300}, "resolution: .*0.001, got 1e-300"),
+        ({"resolution": 11}, "resolution: .*10, got 11"),
         ({"resolution": float("nan")}, "resolution: .*finite"),
         ({"origin": [0, 0, 0.1]}, "not turned, yaw 0, got yaw 0.1"),
         ({"origin": [0, 0]}, "origin"),
         ({"origin": [0, float("inf"), 0]}, "origin"),
+        ({"origin": [0, -1e308, 0]}, r"origin: expected metres, up to 1000000, got 0.0, -1e\+308"),
+        ({"free_thresh": 0.7}, "free_thresh: expected at most occupied_thresh, 0.65, got 0.7"),
         ({"mode": "raw"}, "unknown mode 'raw'"),
         ({"free_thresh": 2}, "free_thresh"),
         ({"image": "../m.pgm"}, "leaves it"),
@@ -129,9 +139,23 @@ def described(folder, changes):
     return path
 
 
-def png_of(width, height):
-    header = b"IHDR" + struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + header + struct.pack(">I", zlib.crc32(header))
+def chunk(name, data):
+    return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+
+def png_of(width, height, *chunks):
+    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+    return b"".join([b"\x89PNG\r\n\x1a\n", chunk(b"IHDR", header), *chunks])
+
+
+ROWS = b"".join(b"\0" + row.tobytes() for row in PIXELS)
+DATA, END = chunk(b"IDAT", zlib.compress(ROWS)), chunk(b"IEND", b"")
+
+
+@pytest.mark.parametrize("chunks", [(DATA, END), (chunk(b"IDAT", zlib.compress(ROWS * 50)), END), (DATA, END, b"more")])
+def test_more_data_than_an_image_needs_is_passed_over_in_silence(tmp_path, chunks, capfd):
+    assert np.array_equal(read_map(make(tmp_path, png_of(3, 2, *chunks))).occupied, ~FREE)
+    assert capfd.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize(
@@ -151,6 +175,10 @@ def png_of(width, height):
         (png_of(1_000_000, 1_000_000), "got 1000000 x 1000000"),
         (png_of(3, 2), "cut off or damaged"),
         (png(PIXELS)[:-20], "cut off or damaged"),
+        (png_of(3, 2, DATA), "cut off or damaged"),
+        (png_of(3, 2, chunk(b"IDAT", zlib.compress(ROWS[:5])), END), "cut off or damaged"),
+        (png_of(3, 2, png_of(9000, 11000)[8:], DATA, END), "damaged .two sizes, .3, 2. and .9000, 11000."),
+        (png_of(3, 2, png_of(90000, 90000)[8:], DATA, END), "cut off or damaged"),
     ],
 )
 def test_bad_images(tmp_path, image, words, capfd):
@@ -174,6 +202,13 @@ def test_a_map_that_is_not_there(tmp_path):
 def test_writing_needs_a_name_of_its_own(tmp_path):
     with pytest.raises(OutputError, match=r"end in \.yaml"):
         write_map(OccupancyGrid(~FREE, np.zeros(2), 0.1), tmp_path / "home.pgm")
+
+
+@pytest.mark.parametrize(("xy", "resolution_m"), [((0.0, 0.0), 20.0), ((0.0, 1e9), 0.1), ((np.nan, 0.0), 0.1)])
+def test_what_could_not_be_read_is_not_written(tmp_path, xy, resolution_m):
+    with pytest.raises(OutputError, match="cannot write map"):
+        write_map(OccupancyGrid(~FREE, np.array(xy), resolution_m), tmp_path / "home.yaml")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_damaged_files_are_read_or_refused(tmp_path):

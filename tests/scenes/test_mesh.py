@@ -268,6 +268,7 @@ def test_bad_vertices_are_told_and_the_rest_is_used(tmp_path):
     [
         ("missing.png", "No such file"),
         ("broken.png", "expected an image"),
+        ("wood.dds", "expected an image"),
         ("../secret.png", "leaves it"),
         ("/etc/passwd", "leaves it"),
         ("file:///etc/passwd", "nothing is fetched"),
@@ -278,6 +279,7 @@ def test_bad_vertices_are_told_and_the_rest_is_used(tmp_path):
 )
 def test_textures_that_cannot_be_had_are_told(hostile_folder, name, message):
     (hostile_folder / "broken.png").write_bytes(png()[:50])
+    (hostile_folder / "wood.dds").write_bytes(b"DDS of another kind")
     for path in (
         obj(hostile_folder / "wall.obj", f"newmtl print\nKd 1 0 0\nmap_Kd {name}\n"),
         gltf(hostile_folder / "wall.gltf", TEXTURED, name),
@@ -346,6 +348,38 @@ def test_too_much_is_refused(tmp_path):
         path.write_text(json.dumps(tree | change))
         with pytest.raises(SceneError, match=message):
             read_mesh(path, AS_IT_IS)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"nodes": 5}, "expected nodes to be a list of objects, got 5; export"),
+        ({"accessors": None}, "expected accessors to be a list of objects, got None"),
+        ({"accessors": [{"count": "many"}]}, "each accessor to have a count, got 'many'"),
+        ({"nodes": [{"children": "all"}]}, "a node's children to be numbers, got 'all'"),
+        ({"nodes": [{"children": [k + 1]} for k in range(1100)]}, "at most 1000 nodes one inside another, got 1001"),
+    ],
+)
+def test_malformed_trees_are_told(tmp_path, change, message):
+    path = gltf(tmp_path / "wall.gltf")
+    path.write_text(json.dumps(json.loads(path.read_text()) | change))
+    with pytest.raises(SceneError, match=message):
+        read_mesh(path, AS_IT_IS)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("house.glb", b"", "expected a .glb file, got an empty file"),
+        ("house.glb", b"PK", "got one that does not begin with glTF or {; export"),
+        ("house.gltf", b'{"a":' + b"[" * 200_000, "nested too deeply"),
+        ("house.obj", b"v 0 0 0\n\0", "expected text, got a binary file; is it really an .obj"),
+    ],
+)
+def test_broken_headers_are_told(tmp_path, name, content, message):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(SceneError, match=message):
+        read_mesh(tmp_path / name, AUTO)
 
 
 def test_instances_that_multiply_are_refused(tmp_path):

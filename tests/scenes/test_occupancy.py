@@ -184,8 +184,17 @@ def test_errors_say_what_is_wrong_with_the_scene():
         grid_of()
     with pytest.raises(SceneError, match="600 x 400; check that it is in metres"):
         grid_of(floor(0, 0, 600, 400))
+    with pytest.raises(SceneError, match="'test': too large"):
+        grid_of(floor(0, 0, 1e30, 1e30))
+    with pytest.raises(SceneError, match="'test': expected corners at finite places"):
+        grid_of(floor(), floor(0, 0, np.inf, 1))
     with pytest.raises(SceneError, match=r"no room for the robot.*got 0\.\d\d m2 out of 2\.\d\d m2"):
         free_space(grid_of(floor(0, 0, 1.5, 1.5)), 0.3)
+
+
+def test_a_sky_around_the_house_is_no_wall():
+    sky = box(-1e6, -1e6, -1e6, 1e6, 1e6, 1e6)
+    assert np.array_equal(grid_of(floor(), sky, *two_rooms(0.9)).occupied, grid_of(floor(), *two_rooms(0.9)).occupied)
 
 
 def test_a_detailed_house_takes_less_than_a_second():

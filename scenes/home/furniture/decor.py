@@ -1,4 +1,4 @@
-"""What makes a home: pictures, rugs, plants, coats, a television."""
+"""What makes a home: pictures, rugs, plants, a television."""
 
 import numpy as np
 
@@ -33,11 +33,11 @@ def framed(kind: str, finish: Finish, frame: Finish, width: float, height: float
     )
 
 
-def wall_picture(palette: Palette, rng: np.random.Generator, finish: Finish) -> Piece:
-    """A framed picture in its own proportions."""
+def wall_picture(palette: Palette, rng: np.random.Generator, finish: Finish, small: bool = False) -> Piece:
+    """A framed picture in its own proportions; small: beside a larger one."""
     texture = finish.material.texture
     aspect = 1.0 if texture is None else texture.shape[1] / texture.shape[0]
-    side = float(rng.uniform(0.5, 0.85))
+    side = float(rng.uniform(0.28, 0.42) if small else rng.uniform(0.5, 0.85))
     frame = (palette.black, palette.oak, palette.white)[int(rng.integers(3))]
     return framed("picture", finish, frame, side * aspect**0.5, side / aspect**0.5)
 
@@ -87,27 +87,6 @@ def _leaf(rng: np.random.Generator, base: FloatArray, z: float) -> Mesh:
     outline = [(0.0, 0.0), (half, 0.4 * length), (0.7 * half, 0.75 * length), (0.0, length)]
     blade = stretched(lathe(outline, sides=4), y=0.08)
     return placed(tilted(blade, -float(rng.uniform(0.3, 1.4))), turn, (base[0], base[1], z))
-
-
-_COAT = ((0.0, -1.0), (0.15, -1.0), (0.16, -0.6), (0.14, -0.15), (0.05, -0.04), (0.04, 0.0), (0.0, 0.0))
-
-
-def coat_rack(palette: Palette, rng: np.random.Generator) -> Piece:
-    """Hooks with coats; its origin is on the floor."""
-    hooks = [box((x - 0.01, x + 0.01), (0.02, 0.09), (1.66, 1.69)) for x in np.linspace(-0.4, 0.4, 5)]
-    coats = [
-        placed(stretched(lathe(_COAT, sides=12), y=0.5, z=float(rng.uniform(0.6, 0.85))), 0.0, (float(x), 0.1, 1.65))
-        for x in rng.permutation(np.linspace(-0.4, 0.4, 5))[:3]
-    ]
-    cloths = [palette.cushions[1], palette.cushions[2], palette.sofa]
-    return Piece(
-        "coat_rack",
-        (
-            Component("board", palette.oak, box((-0.48, 0.48), (0.0, 0.02), (1.6, 1.74))),
-            Component("hooks", palette.metal, merge(hooks)),
-            *(Component(f"coat_{i}", c, m) for i, (c, m) in enumerate(zip(cloths, coats, strict=True))),
-        ),
-    )
 
 
 def television(palette: Palette, _: np.random.Generator) -> Piece:

@@ -32,24 +32,19 @@ def light_switch(palette: Palette, rng: np.random.Generator) -> Piece:
 
 
 def socket(palette: Palette, rng: np.random.Generator) -> Piece:
-    """One to three outlets in a row, sometimes with a plug and its cable."""
+    """One to three outlets in a row."""
     number = int(rng.integers(1, 4))
     spots = [0.082 * (i - (number - 1) / 2) for i in range(number)]
     ring = lathe([(0.017, 0.0), (0.021, 0.0), (0.021, 0.004), (0.017, 0.004), (0.017, 0.0)], sides=12)
-    components = [
-        Component("plate", palette.porcelain, _plate(0.084 * number, 0.084)),
-        Component("outlets", palette.metal, merge(tilted(ring, TO_THE_ROOM, (x, 0.009, 0.0)) for x in spots)),
-        Component(
-            "wells",
-            palette.black,
-            merge(tilted(cylinder(0.017, (0.0, 0.002)), TO_THE_ROOM, (x, 0.009, 0.0)) for x in spots),
+    well = cylinder(0.017, (0.0, 0.002))
+    return Piece(
+        "socket",
+        (
+            Component("plate", palette.porcelain, _plate(0.084 * number, 0.084)),
+            Component("outlets", palette.metal, merge(tilted(ring, TO_THE_ROOM, (x, 0.009, 0.0)) for x in spots)),
+            Component("wells", palette.black, merge(tilted(well, TO_THE_ROOM, (x, 0.009, 0.0)) for x in spots)),
         ),
-    ]
-    if rng.random() < 0.5:
-        plug = tilted(cylinder(0.016, (0.002, 0.04)), TO_THE_ROOM, (spots[0], 0.011, 0.0))
-        cable = box((spots[0] - 0.004, spots[0] + 0.004), (0.03, 0.038), (-0.31, 0.0))
-        components.append(Component("plug", palette.black, merge([plug, cable])))
-    return Piece("socket", tuple(components))
+    )
 
 
 def thermostat(palette: Palette, _: np.random.Generator) -> Piece:

@@ -98,17 +98,45 @@ def test_rooms_lamps_and_windows_are_in_the_extras(house, written):
     assert read_mesh(written, PlacedOptions(up="y")).rooms == ()
 
 
-@pytest.mark.parametrize(
-    "extras",
-    [None, {}, {"slamgym": 3}, {"slamgym": {"rooms": [{"name": "x"}]}}, {"slamgym": {"lamps": [{"position": [1, 2]}]}}],
-)
+@pytest.mark.parametrize("extras", [None, {}, 3, {"other": 3}])
 def test_other_extras_are_passed_over(extras):
     assert read_extras(extras) is None
 
 
-def test_extras_that_are_no_numbers():
-    bounds = dict.fromkeys(("x_min", "y_min", "x_max", "y_max"), float("nan"))
-    assert read_extras({"slamgym": {"rooms": [{"name": "x", "kind": "y"} | bounds]}}) is None
+ROOM = {"name": "x", "kind": "y", "x_min": 0, "y_min": 0, "x_max": 1, "y_max": 1}
+LAMP = {"position": [0, 0, 2]}
+WINDOW = {"centre": [0, 0, 1], "half_u": [1, 0, 0], "half_v": [0, 0, 1]}
+
+
+@pytest.mark.parametrize(
+    ("extras", "message"),
+    [
+        (3, "slamgym: Input should be an object, got '3'"),
+        ({"rooms": [{"name": "x"}]}, "rooms.0.kind: Field required"),
+        ({"lamps": [{"position": [1, 2]}]}, "lamps.0.position.2: Field required"),
+        ({"rooms": [ROOM | {"x_max": float("nan")}]}, "slamgym: expected numbers"),
+        ({"rooms": [ROOM | {"x_max": 2e4}]}, "room 'x': expected sides, at most 10000 m from the origin"),
+        ({"rooms": [ROOM | {"y_min": 1}]}, "room 'x': expected sides"),
+        ({"lamps": [LAMP] * 1001}, "at most 1000 lamps, got 1001"),
+        ({"lamps": [{"position": [0, -2e4, 0]}]}, "coordinates from -10000 to 10000"),
+        ({"lamps": [LAMP | {"intensity": -1}]}, "intensities from 0 to 1000"),
+        ({"lamps": [LAMP | {"radius": 11}]}, "radii from 0 to 10"),
+        ({"lamps": [LAMP | {"colour": [0, 0, 11]}]}, "colours from 0 to 10"),
+        ({"windows": [WINDOW | {"half_v": [0, 0, 1e5]}]}, "coordinates from -10000"),
+        ({"windows": [WINDOW | {"intensity": 1e4}]}, "intensities from 0"),
+    ],
+)
+def test_extras_that_no_house_has(extras, message):
+    with pytest.raises(SceneError) as told:
+        read_extras({"slamgym": extras})
+    assert message in str(told.value)
+
+
+def test_extras_that_are_not_used_are_told(house, tmp_path):
+    dark = replace(house, lamps=(replace(house.lamps[0], intensity=1e9),))
+    again = read_mesh(write_glb(dark, tmp_path / "dark.glb"), PlacedOptions())
+    assert (again.rooms, again.lamps) == ((), ())
+    assert "dark.glb: extras: lamps and windows: expected intensities from 0 to 1000, got others" in again.defects[0]
 
 
 def test_nothing_is_overwritten(house, tmp_path):

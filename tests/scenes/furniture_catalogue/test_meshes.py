@@ -120,3 +120,11 @@ def test_a_name_that_leaves_the_archive_is_not_read(shape, files, tmp_path):
     (tmp_path / "secret.png").write_bytes(files()["sofa/cloth.png"])
     mtl = files()["sofa/thing.mtl"].decode().replace("cloth.png", "../../../secret.png")
     assert shape(files(mtl=mtl)).missing == 1
+
+
+def test_names_in_an_old_encoding(shape, files):
+    old = {
+        name: data.replace(b"front", "hölzern".encode("latin-1")) if name.endswith((".obj", ".mtl")) else data
+        for name, data in files().items()
+    }
+    assert by_material(shape(old)).keys() == {"cloth", "hölzern"}

@@ -1,5 +1,8 @@
 """Models that stand where pieces made by code would."""
 
+import importlib
+import inspect
+import pkgutil
 from dataclasses import replace
 
 import numpy as np
@@ -9,10 +12,18 @@ from slamgym.scenes.furniture_catalogue.catalogue import read_catalogue
 from slamgym.scenes.furniture_catalogue.meshes import shape_of
 from slamgym.scenes.furniture_catalogue.showroom import Showroom, stand_in
 from slamgym.scenes.furniture_catalogue.wanted import WANTED, Wanted
+from slamgym.scenes.home import furniture
 from slamgym.scenes.home.furniture.piece import Component, Piece, Top
 from slamgym.scenes.home.palette import Finish
 from slamgym.scenes.home.solids import box
 from slamgym.scenes.house import House, Material
+
+MAKERS = {
+    name
+    for found in pkgutil.iter_modules(furniture.__path__, f"{furniture.__name__}.")
+    for name, maker in vars(importlib.import_module(found.name)).items()
+    if inspect.isfunction(maker)
+}
 
 ANY = Wanted(("sofa",), (0.0, 0.0, 0.0), (9.0, 9.0, 9.0))
 
@@ -35,6 +46,12 @@ def model(tmp_path, write_catalogue, entry):
 
 def standing(own, model, wanted=ANY):
     return stand_in(own, model, shape_of(model).components, wanted)
+
+
+@pytest.mark.parametrize("name", WANTED)
+def test_what_models_can_replace_is_made_by_code(name):
+    """A maker is known by its function's name."""
+    assert name in MAKERS
 
 
 def test_a_model_has_its_own_size_and_its_back_to_the_wall(model):

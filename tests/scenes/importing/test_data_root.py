@@ -5,6 +5,7 @@ import pytest
 
 from slamgym.errors import SceneError
 from slamgym.scenes.importing.data_root import MAX_FILE_BYTES, DataRoot, read_plain
+from slamgym.scenes.importing.obj_text import LIBRARIES
 from slamgym.scenes.importing.resolver import RootResolver
 
 
@@ -52,7 +53,7 @@ def test_an_absolute_path_inside_is_read(root):
         ("link", "leaves it"),
         ("file:///etc/passwd", "nothing is fetched"),
         ("http://localhost/oak.png", "nothing is fetched"),
-        ("C:\\oak.png", "nothing is fetched"),
+        ("C:\\oak.png", "is not there"),
         ("loop", "loop"),
         ("pipe", "which is none"),
         ("textures", "a readable file"),
@@ -89,7 +90,7 @@ def test_devices_are_not_read():
 
 def test_the_resolver_decodes_names_and_notes_failures(root):
     (root.folder / "textures" / "oak wood.bin").write_bytes(b"bin")
-    resolver = RootResolver(root, "models")
+    resolver = RootResolver(root, "models", buffers=["../textures/oak%20wood.bin"])
     assert resolver.get("../textures/oak%20wood.bin") == b"bin"
     with pytest.raises(SceneError):
         resolver.get("../../secret")
@@ -98,3 +99,18 @@ def test_the_resolver_decodes_names_and_notes_failures(root):
     assert resolver.namespaced("deeper").base == "models/deeper"
     with pytest.raises(SceneError):
         resolver.write("x", b"")
+
+
+def test_a_path_of_another_machine_is_looked_for_beside_the_file(root):
+    resolver = RootResolver(root, "textures", libraries=["C:\\Users\\me\\oak wood.png", "D:/oak.mtl"])
+    assert resolver.get(LIBRARIES) == b"oak\n"
+    assert resolver.assumptions == [r"'C:\\Users\\me\\oak wood.png' of another machine: 'oak wood.png' is used for it"]
+    assert "'D:/oak.mtl', which is not there; put it there" in resolver.failures[0]
+
+
+def test_all_lists_of_materials_are_read(root):
+    (root.folder / "a.mtl").write_bytes("newmtl h\u00f6lzern".encode("latin-1"))
+    (root.folder / "b.mtl").write_bytes(b"newmtl b\0")
+    resolver = RootResolver(root, libraries=["a.mtl", "b.mtl", "c.mtl"])
+    assert resolver.get(LIBRARIES).decode().split("\n") == ["newmtl h\u00f6lzern", "", ""]
+    assert ["binary" in resolver.failures[0], "No such file" in resolver.failures[1]] == [True, True]

@@ -117,6 +117,55 @@ def test_a_floor_alone_is_a_scene_and_a_ball_is_none():
     assert placement([piece], PlacedOptions(floor=-1.0), FORMATS["ply"]).T_world_file[2, 3] == 1.0
 
 
+def without(piece, axis, sign):
+    """The piece without its faces that look along an axis; sign 0: in either direction."""
+    a, b, c = np.moveaxis(piece.vertices[piece.faces], 1, 0)
+    along = np.cross(b - a, c - a)[:, axis]
+    return replace(piece, faces=piece.faces[(along * sign <= 0) if sign else (along == 0)])
+
+
+def turned_over(piece):
+    return replace(piece, faces=piece.faces[:, ::-1])
+
+
+ROOM = box("room", (0, 0, 0), (6, 5, 2.6))
+PARAPET = without(box("parapet", (0, 0, 2.6), (6, 5, 3.4)), 2, 0)
+THICK_WALLS = [
+    *(box("wall", (0, y, 0), (6, y + 0.2, 2.6)) for y in (0, 4.8)),
+    *(box("wall", (x, 0.2, 0), (x + 0.2, 4.8, 2.6)) for x in (0, 5.8)),
+]
+
+
+@pytest.mark.parametrize("kind", ["glb", "ply"])
+@pytest.mark.parametrize("up", "xyz")
+@pytest.mark.parametrize("unit", [1.0, 0.01])
+@pytest.mark.parametrize(
+    ("pieces", "instead"),
+    [
+        ([without(ROOM, 2, -1)], "got one with 0 m above it and 2.6 m below it"),
+        ([turned_over(without(ROOM, 2, -1)), PARAPET], "got one with 0.8 m above it"),
+        ([without(ROOM, 2, 0)], "got what may be walls with"),
+        ([without(ROOM, 2, 0), box("table", (1, 1, 0), (2.5, 2, 0.75))], "got what may be walls with"),
+        (THICK_WALLS, "got what may be walls with"),
+    ],
+)
+def test_a_ceiling_or_a_wall_is_no_floor(pieces, instead, unit, up, kind):
+    with pytest.raises(SceneError, match=r"^no floor found: expected a level surface") as told:
+        placement(in_file(pieces, up, unit), AUTO, FORMATS[kind])
+    if unit == 1.0:
+        assert instead in str(told.value)
+    given = PlacedOptions(up=up, unit=unit, floor=0.0)
+    assert placement(in_file(pieces, up, unit), given, FORMATS[kind]).T_world_file[2, 3] == 0.0
+
+
+def test_a_room_without_ceiling_or_one_wall_has_a_floor():
+    for axis, sign in ((2, 1), (0, 1), (1, -1)):
+        for up in "xyz":
+            found = placement(in_file([without(ROOM, axis, sign)], up, 1.0), AUTO, FORMATS["stl"])
+            np.testing.assert_allclose(found.T_world_file[:3, :3], np.array(TURNED[up], float), atol=1e-12)
+            assert found.T_world_file[2, 3] == pytest.approx(0.0)
+
+
 def test_a_floor_that_looks_down_is_turned_and_furniture_is_not():
     floor = slab("floor", (0, 0, 0), (8, 5, 0))
     inverted = replace(floor, faces=floor.faces[:, ::-1])
@@ -143,9 +192,12 @@ def test_map_coordinates_keep_their_millimetres():
     ("options", "message"),
     [
         ({"up": "w"}, "up"),
-        ({"unit": 0.0}, "unit"),
-        ({"unit": "inch"}, "unit"),
-        ({"floor": "low"}, "floor"),
+        ({"unit": 0.0}, "'unit': expected .* metres as 0.01 from 1e-06 to 10000, got '0.0'$"),
+        ({"unit": "1e5"}, "'unit': .* from 1e-06 to 10000"),
+        ({"unit": "yard"}, "^scene option 'unit': expected auto, m, cm, mm, inch, foot or metres as 0.01, got 'yard'$"),
+        ({"unit": None}, "'unit': expected auto"),
+        ({"floor": "low"}, "^scene option 'floor': expected auto or metres as -0.3, got 'low'$"),
+        ({"floor": "-2e4"}, "'floor': .* from -10000 to 10000"),
         ({"ups": "z"}, "up"),
     ],
 )
@@ -156,3 +208,9 @@ def test_bad_options_are_told(options, message):
 
 def test_options_may_come_as_text():
     assert PlacedOptions.checked({"unit": "0.01", "floor": "-0.3"}) == PlacedOptions(unit=0.01, floor=-0.3)
+    assert PlacedOptions.checked({"unit": "auto", "floor": "auto"}) == PlacedOptions()
+
+
+@pytest.mark.parametrize(("word", "metres"), [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("inch", 0.0254)])
+def test_units_have_words(word, metres):
+    assert PlacedOptions.checked({"unit": word}).unit == metres

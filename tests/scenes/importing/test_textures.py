@@ -3,8 +3,10 @@ from io import BytesIO
 import numpy as np
 import pytest
 from PIL import Image
+from trimesh.visual.material import PBRMaterial
 
 from slamgym.errors import SceneError
+from slamgym.scenes.importing.materials import read_surfaces
 from slamgym.scenes.importing.textures import MAX_SIDE, decode_texture, texture_of
 
 
@@ -65,3 +67,12 @@ def test_a_bomb_of_pixels_is_not_decoded():
         decode_texture(bytes(content))
     with pytest.raises(SceneError, match="expected at most"):
         texture_of(Image.new("1", (12_000, 12_000)))
+
+
+def test_images_are_closed_after_use():
+    image = Image.open(BytesIO(encoded(PIXELS)))
+    surfaces, defects = read_surfaces({"wall": PBRMaterial(name="print", baseColorTexture=image)})
+    assert (surfaces["wall"].material.texture == PIXELS).all()
+    assert defects == []
+    with pytest.raises(ValueError, match="closed"):
+        image.load()

@@ -1,10 +1,12 @@
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 import trimesh
 from numpy.typing import NDArray
 
+from slamgym.errors import SceneError
 from slamgym.scenes.house import House, Lamp, Material, Part, Window
 from slamgym.scenes.light.bake import MAX_EDGE_M, bake_light
 from slamgym.scenes.light.refine import face_normals
@@ -144,6 +146,14 @@ def test_no_light_leaks_through_a_wall() -> None:
     assert light_of(dark).max() < 0.5 * np.median(light_of(lit))
 
 
+def test_no_light_leaks_through_a_thin_wall() -> None:
+    """Points where light is computed lie closer to their surface than 5 cm."""
+    rooms = [box("lit", (-4, -2, 0), (0, 2, 2.5), True), box("dark", (0.05, -2, 0), (4, 2, 2.5), True)]
+    lit, dark = bake_light(House("two", tuple(rooms), lamps=(Lamp((-1.0, 0.0, 1.2)),))).parts
+    beside = brightness(lit, (0.0, 0.0, 1.2), (1, 0, 0))
+    assert brightness(dark, (0.05, 0.0, 1.2), (1, 0, 0)) < 0.5 * beside
+
+
 def test_daylight_falls_off_from_the_window() -> None:
     window = Window((-2.0, 0.0, 1.5), (0.0, 0.6, 0.0), (0.0, 0.0, 0.5))
     lit = bake_light(replace(room(lamps=()), windows=(window,)))
@@ -159,6 +169,27 @@ def test_a_house_without_lamps_gets_some_and_says_so() -> None:
     assert lit.assumptions[1].startswith("light: no lamps or windows are given")
     assert lit.lamps == ()
     assert 0.4 < light_of(lit.parts[0]).mean() < 0.9
+
+
+def test_a_garden_changes_neither_the_lamps_nor_the_exposure_indoors() -> None:
+    whole = room(lamps=()).parts[0]
+    lawn = box("lawn", (-30, -30, -0.3), (30, 30, -0.1))
+    alone, beside = (bake_light(House("house", parts)).parts[0] for parts in ((whole,), (whole, lawn)))
+    assert light_of(beside).mean() == pytest.approx(light_of(alone).mean(), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    "lights",
+    [
+        {"lamps": (replace(LAMP, intensity=1e308),)},
+        {"lamps": (replace(LAMP, position=(np.nan, 0.0, 1.0)),)},
+        {"windows": (Window((-2.0, 0.0, 1.5), (0.0, 0.6, 0.0), (0.0, 0.0, 0.5), intensity=1e308),)},
+    ],
+)
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_lamps_that_give_no_finite_light_are_an_error(lights: dict[str, Any]) -> None:
+    with pytest.raises(SceneError, match=r"expected finite light, .* lamps or windows"):
+        bake_light(replace(room(lamps=()), **lights))
 
 
 def test_a_house_without_a_ceiling_is_not_overexposed() -> None:

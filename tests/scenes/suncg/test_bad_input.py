@@ -80,6 +80,13 @@ def test_a_room_without_a_box_has_that_of_its_floor(dataset):
     assert (room.x_min, room.y_min, room.x_max, room.y_max) == pytest.approx((0, -3, 4, 0))
 
 
+@pytest.mark.parametrize("corner", [[0, 2.5, 3], [4, 2.5, 2e4]])
+def test_a_room_that_no_house_has_is_none(dataset, corner):
+    house = read(dataset([FLOOR | {"bbox": {"min": [0, 0, 0], "max": corner}}]))
+    assert house.rooms == ()
+    assert "node 0_1: bbox: expected sides, at most 10000 m from the origin, got 0 to " in told(house)
+
+
 def test_missing_files_of_a_room_and_of_a_material(dataset):
     path = dataset([FLOOR, WEDGE])
     root = path.parents[2]
