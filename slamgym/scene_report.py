@@ -1,6 +1,6 @@
-"""A house at a glance: views from a path, the plan, figures, and what was assumed when it was loaded.
+"""A house at a glance: views along a path, the plan, figures, and what was assumed when it was loaded.
 
-contact_sheet.png  views from a path, numbered as in the plan
+contact_sheet.png  views along a path, numbered as in the plan
 plan.png           rooms, occupancy grid and path, from above
 map.pgm, map.yaml  the occupancy grid, as ROS's map_server has it
 scene.json         the figures, assumptions and defects
@@ -10,7 +10,6 @@ house.glb, suncg/  the house in other formats, where asked for
 import json
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
-from itertools import cycle, islice
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -34,9 +33,6 @@ from slamgym.scenes.map_server import write_map
 from slamgym.stage import Stage, load_stage
 
 VIEWS = 12
-TURNS = tuple(np.radians((0.0, 60.0, 0.0, -60.0)).tolist())
-"""From the path's direction to a view's, radians, counter-clockwise, in turn: along the path alone a house shows little
-but its corridor and doors."""
 
 EXPORTS: dict[str, Callable[[Stage, FilePath], object]] = {
     "glb": lambda stage, folder: write_glb(stage.house, folder / "house.glb"),
@@ -48,9 +44,7 @@ EXPORTS: dict[str, Callable[[Stage, FilePath], object]] = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SceneReport:
-    """views: colour images (H, W, 3) from the path at the distances `views_m` along it, metres: in its direction,
-    60 degrees to the left of it, in its direction, 60 degrees to the right, and so on. figures: what is in scene.json.
-    """
+    """views: colour images (H, W, 3) along the path, at the distances `views_m`, metres. figures: those of scene.json."""
 
     stage: Stage
     path: Path
@@ -62,7 +56,7 @@ class SceneReport:
 def inspect_scene(
     params: DriveParams, seed: int = 0, on_progress: Callable[[float], None] | None = None
 ) -> SceneReport:
-    """Look around in the scene of the parameters, from the path that `seed` picks, as a drive would see it.
+    """Look around in the scene of the parameters, along the path that `seed` picks, as a drive would see it.
 
     on_progress: called with the share of the light that is baked. Raises SceneError, ConfigError and RenderError.
     """
@@ -70,9 +64,7 @@ def inspect_scene(
     path = plan_path(stage.grid, stage.free, params.path_length_m, np.random.default_rng(seed))
     views_m = tuple(np.linspace(0.0, path.length_m, VIEWS, endpoint=False).tolist())
     with Renderer(stage.house, params.camera, params.lighting, params.brightness, params.multisampling) as renderer:
-        turns = islice(cycle(TURNS), VIEWS)
-        poses = [_camera_pose(path, s, turn, params.camera_height) for s, turn in zip(views_m, turns, strict=True)]
-        frames = [renderer.render(pose) for pose in poses]
+        frames = [renderer.render(_camera_pose(path, s, params.camera_height)) for s in views_m]
     views = tuple(colour for colour, _ in frames)
     open_share = float(np.mean([depth == 0.0 for _, depth in frames]))
     return SceneReport(stage, path, views, views_m, _figures(stage, path, views, open_share))
@@ -107,10 +99,10 @@ def write_report(report: SceneReport, folder: FilePath, exports: Collection[str]
     return folder
 
 
-def _camera_pose(path: Path, s: float, turn: float, camera_height: float) -> NDArray[np.float64]:
-    """T_world_cam (4, 4) at distance `s` along the path, turned from its direction by `turn`, radians."""
+def _camera_pose(path: Path, s: float, camera_height: float) -> NDArray[np.float64]:
+    """T_world_cam (4, 4) at distance `s` along the path, in its direction."""
     x, y = path.point_at(s).tolist()
-    return mast_camera_pose(x, y, path.heading_at(s) + turn, camera_height)
+    return mast_camera_pose(x, y, path.heading_at(s), camera_height)
 
 
 def _figures(stage: Stage, path: Path, views: Sequence[Image], open_share: float) -> dict[str, Any]:

@@ -27,9 +27,7 @@ OPEN_SHARE_TOLD = 0.01
 
 @dataclass(kw_only=True)
 class Scene:
-    """Look at a house: 12 views from a path, its plan, its figures, and what was assumed when it was loaded.
-
-    Every second view looks 60 degrees to the left or right of the path.
+    """Look at a house: 12 views along a path, its plan, its figures, and what was assumed when it was loaded.
 
     Example: slamgym scene my_flat.glb --scene-options up z unit 0.01 --out out/my_flat
     """

@@ -41,7 +41,7 @@ def test_a_broken_loader_hides_no_other_and_is_told_where_none_reads_a_file(monk
     monkeypatch.setitem(SCENES, "broken", "no_such_module:Loader")
     with pytest.raises(SceneError, match="did you mean 'procedural'"):
         find_scene("procedurl")
-    with pytest.raises(SceneError, match="expected a file ending in .*no_such_module"):
+    with pytest.raises(SceneError, match=r"expected a file ending in .*no_such_module"):
         find_scene("flat.usd")
 
 
