@@ -54,11 +54,7 @@ def _read(path: Path, options: PlacedOptions) -> House:
 
     kind = path.suffix.lower().lstrip(".")
     read = read_pieces(read_plain(path), kind, DataRoot(path.parent))
-    extras, unused = _extras(read.extras)
-    noted = list(read.assumptions)
-    if extras is not None and not _lies_as_ours(options):  # they would lie elsewhere
-        extras = None
-        noted.append("rooms, lamps and windows of the file: not used, as up, unit or floor are given otherwise")
+    extras, passed_over, unused = _extras(read.extras, options)
     pieces, cleaned = clean(read.pieces)
     if not pieces:
         told = "; ".join((*read.defects, *cleaned)) or "the file has none"
@@ -66,20 +62,20 @@ def _read(path: Path, options: PlacedOptions) -> House:
     T_world_file, assumptions = placement(pieces, options if extras is None else OURS, FORMATS[kind])
     parts, turned = placed(pieces, T_world_file)
     defects = tuple(f"{path.name}: {defect}" for defect in (*read.defects, *unused, *cleaned, *turned))
-    house = House(str(path), tuple(parts), assumptions=(*assumptions, *noted), defects=defects)
+    house = House(str(path), tuple(parts), assumptions=(*assumptions, *read.assumptions, *passed_over), defects=defects)
     return house if extras is None else _completed(house, extras)
 
 
-def _lies_as_ours(options: PlacedOptions) -> bool:
-    return all(getattr(options, name) in ("auto", ours) for name, ours in OURS)
-
-
-def _extras(given: object) -> tuple[Extras | None, list[str]]:
-    """What can be used of a file's extras, and a line about what cannot."""
+def _extras(given: object, options: PlacedOptions) -> tuple[Extras | None, list[str], list[str]]:
+    """What can be used of a file's extras, and about what cannot an assumption or a defect."""
     try:
-        return read_extras(given), []
+        extras = read_extras(given)
     except SceneError as error:
-        return None, [f"extras: {error}; not used"]
+        return None, [], [f"extras: {error}; not used"]
+    if extras is None or all(getattr(options, name) in ("auto", ours) for name, ours in OURS):
+        return extras, [], []
+    # Placed otherwise, its rooms and lamps would lie elsewhere.
+    return None, ["rooms, lamps and windows of the file: not used, as up, unit or floor are given otherwise"], []
 
 
 def _completed(house: House, extras: Extras) -> House:

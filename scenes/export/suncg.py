@@ -26,8 +26,9 @@ def write_suncg(house: House, root: Path) -> Path:
     """Write a house in SUNCG's layout into the new folder `root`, and return the path of its house.json.
 
     Pieces named floor, wall or ceiling, numbered or not, belong to the room that they are in; each other piece is an
-    Object with a model of its own, standing at its origin. Baked light, lamps and windows have no place there, and the colours of a part's
-    vertices become their mean. Raises OutputError when `root` holds files, SceneError for a house without faces.
+    Object with a model of its own, standing at its origin. Baked light, lamps and windows have no place there, and the
+    colours of a part's vertices become their mean. Raises OutputError when `root` holds files, SceneError for a house
+    without faces.
     """
     check_free(root, "folder")
     pieces = pieces_of(house)

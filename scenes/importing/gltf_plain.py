@@ -6,7 +6,7 @@ coordinates. The JSON of a file is changed accordingly, its binary content never
 
 import json
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from slamgym.scenes.importing.names import listed
@@ -66,7 +66,7 @@ def flat_material(material: Tree) -> Tree:
     return plain | SHINES if not picture or picture["index"] == base["index"] else plain
 
 
-def base_texture(material: Tree) -> Tree:
+def base_texture(material: Mapping[str, Any]) -> Mapping[str, Any]:
     """The texture of a material's base colour, as the file names it; empty without."""
     glossy = material.get("extensions", {}).get(GLOSSINESS, {})
     found = glossy.get("diffuseTexture") or material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
@@ -145,7 +145,6 @@ def _with_json(data: bytes, tree: Tree) -> bytes:
     text = json.dumps(tree).encode()
     if data[:4] != b"glTF":
         return text
-    text += b" " * (-len(text) % 4)
     rest = data[20 + int.from_bytes(data[12:16], "little") :]
     header = data[:8] + struct.pack("<II", 20 + len(text) + len(rest), len(text)) + data[16:20]
     return header + text + rest

@@ -9,31 +9,41 @@ import numpy as np
 from slamgym.errors import SceneError
 from slamgym.scenes.house import Part
 from slamgym.scenes.importing.cleaning import triangles_of
+from slamgym.scenes.importing.inside_out import inside_out
 from slamgym.scenes.importing.levels import Storey, level_share, lowest_storey
 from slamgym.scenes.importing.pieces import Piece
 from slamgym.scenes.importing.placed_options import UNITS, PlacedOptions
+from slamgym.scenes.importing.up_axis import LOW, Units, room_height, seen_up
 from slamgym.types import FloatArray
 
 AXES = "xyz"
-SURE = 1.25
-"""How much better than the format's another axis must look."""
 WALLS_ONLY = 0.1
 """Share of the area that is level, below which a scene has walls and no floor."""
+NO_FLOOR = 0.5
 LEAST_COVERAGE = 0.05
+"""Shares of the scene's rectangle: where a floor is doubted, and where there is none."""
 LEAST_BELOW_M = 1.0
 BARE = 0.1
-LOW = 0.5
-"""Height of a storey by what lies below it: less than BARE, it is a roof; less than LOW and seen from below, too."""
+"""Height of a storey by what lies below it, below which it is a roof."""
 STOREY_M = (1.5, 6.5)
-USUAL_STOREY_M = 2.7
+IMPERIAL_STOREY_M = (2.2, 3.5)
+HALL_M = 12.0
 TALLEST_OF_METRES = 20.0
 """What a .glb, which is in metres by its specification, may have as a hall."""
-UNIT_NAMES = {"cm": "centimetre", "mm": "millimetre", "inch": "inch", "foot": "foot"}
+UNIT_NAMES = {"m": "metre", "cm": "centimetre", "mm": "millimetre", "inch": "inch", "foot": "foot"}
+STOREYS_OF_UNITS = (
+    ("m", STOREY_M),
+    ("inch", IMPERIAL_STOREY_M),
+    ("foot", IMPERIAL_STOREY_M),
+    ("cm", STOREY_M),
+    ("mm", STOREY_M),
+    ("m", (STOREY_M[1], HALL_M)),
+    ("inch", STOREY_M),
+    ("foot", STOREY_M),
+)
+"""The first in which a storey has a fitting height, in metres, is the unit."""
 FAR_M = 1000.0
 """From where on float32 is too coarse."""
-FLOOR_M = 0.03
-FLOOR_COSINE = 0.7
-FLOOR_SHARE = 0.1
 
 
 class Format(NamedTuple):
@@ -68,16 +78,14 @@ def placement(pieces: Sequence[Piece], options: PlacedOptions, form: Format) -> 
     up, told_up = _up(storeys, triangles, options, form)
     storey = storeys[AXES.index(up)]
     unit, told_unit = _unit(storey, options, form)
-    walls = _walls(triangles, AXES.index(up)) if options.up == "auto" else ""
+    walls = _walls(storey, triangles, AXES.index(up)) if options.up == "auto" else ""
     if options.floor == "auto" and (instead := _instead_of_floor(storey, unit) or walls):
         raise SceneError(
             f"no floor found: expected a level surface with {up} up ({told_up}), got {instead}; give the scene options "
             "up, unit and floor"
         )
     floor_m = storey.floor.height * unit if options.floor == "auto" and storey else float(options.floor)
-    told_floor = (
-        "as given" if options.floor != "auto" else f"a level surface of {_coverage(storey):.0%} of the rectangle"
-    )
+    told_floor = "as given" if options.floor != "auto" or storey is None else _floor_words(storey, unit)
     T_world_file = _turn(up)
     T_world_file[:3] *= unit
     T_world_file[2, 3] = -floor_m
@@ -94,48 +102,51 @@ def placement(pieces: Sequence[Piece], options: PlacedOptions, form: Format) -> 
 
 
 def placed(pieces: Sequence[Piece], T_world_file: FloatArray) -> tuple[list[Part], list[str]]:
-    """The parts in the world, and a line of those that were turned inside out.
-
-    A part with much of the floor is, when its floor looks down: the robot needs one that looks up.
-    """
+    """The parts in the world, with floors that look up, and a line of those that were turned inside out."""
     parts = [piece.part(T_world_file) for piece in pieces]
-    downs, ups = np.array([_floor_areas(part) for part in parts]).reshape(-1, 2).T
-    inverted = (downs > ups) & (downs > FLOOR_SHARE * (downs + ups).sum())
+    inverted = inside_out(parts)
     names = [part.name for part, wrong in zip(parts, inverted, strict=True) if wrong]
-    turned = [_inside_out(part) if wrong else part for part, wrong in zip(parts, inverted, strict=True)]
+    turned = [
+        replace(part, faces=part.faces[:, ::-1]) if wrong else part for part, wrong in zip(parts, inverted, strict=True)
+    ]
     return turned, [f"turned inside out, as its floor looked down: {name!r}" for name in names]
 
 
 def _up(
     storeys: Sequence[Storey | None], triangles: FloatArray, options: PlacedOptions, form: Format
 ) -> tuple[Literal["x", "y", "z"], str]:
-    """The axis and why: one whose storey is low, and whose floor fills the rectangle around the scene."""
+    """The axis and why."""
     if options.up != "auto":
         return options.up, "as given"
-    extents = np.maximum(np.ptp(triangles, axis=(0, 1)), 1e-12)
-    flatness = np.exp(np.log(extents).mean()) / extents
-    scores = np.array([_coverage(storey) for storey in storeys]) * flatness
-    best = int(scores.argmax())
-    if AXES[best] != form.up and scores[best] > SURE * scores[AXES.index(form.up)]:
-        seen: Literal["x", "y", "z"] = ("x", "y", "z")[best]
-        return seen, f"seen in the geometry ({form.name} says {form.up})"
-    return form.up, f"as {form.name} has it"
+    usual = [UNITS["m"]] if form.metres else [UNITS[word] for word in ("m", "cm", "mm")]
+    units = Units(usual, list(UNITS.values())) if options.unit == "auto" else Units([float(options.unit)])
+    own = AXES.index(form.up)
+    seen = seen_up(storeys, np.ptp(triangles, axis=(0, 1)), own, units)
+    if seen == own:
+        return form.up, f"as {form.name} has it"
+    height = 0.0 if (storey := storeys[own]) is None else storey.height
+    why = f"a storey would be {height:.3g} high with {form.up} up, not {room_height(storeys[seen]):.3g}"
+    up: Literal["x", "y", "z"] = ("x", "y", "z")[seen]
+    return up, f"seen in the geometry ({form.name} says {form.up}, but {why})"
 
 
-def _walls(triangles: FloatArray, up: int) -> str:
-    """That the scene may be walls without a floor, with another axis than `up` up; nothing when it may not.
+def _walls(storey: Storey | None, triangles: FloatArray, up: int) -> str:
+    """That the scene may be walls without a floor; nothing when it may not.
 
-    It is one when nearly nothing is level then; but not one that is flat with `up` up, as a corridor or a hall is.
+    It is when nearly nothing is level, and no floor either, with `up` up; or nearly nothing with another axis up,
+    unless the storeys are flat with `up` up, as of a tower.
     """
-    extents = np.ptp(triangles, axis=(0, 1))
-    others = [k for k in range(3) if k != up and extents[up] > LOW * extents[k]]
-    axes = [AXES[k] for k in others if level_share(triangles, k) < WALLS_ONLY]
+    if storey is None:
+        return ""
+    flat = LOW * np.ptp(triangles, axis=(0, 1)) >= room_height(storey)
+    possible = [storey.ground < NO_FLOOR if k == up else not flat[k] for k in range(3)]
+    axes = [AXES[k] for k in range(3) if possible[k] and level_share(triangles, k) < WALLS_ONLY]
     return f"what may be walls with {axes[0]} up" if axes else ""
 
 
 def _instead_of_floor(storey: Storey | None, unit: float) -> str:
     """What there is when it is no floor, a ceiling for example; else nothing. unit: metres."""
-    if storey is None or storey.coverage < LEAST_COVERAGE:
+    if storey is None or storey.ground < LEAST_COVERAGE:
         return f"{_coverage(storey):.0%} of the scene's rectangle"
     least = (LOW if storey.floor.upward < 0.0 else BARE) * storey.below
     if storey.below * unit >= LEAST_BELOW_M and storey.height <= least:
@@ -148,15 +159,19 @@ def _unit(storey: Storey | None, options: PlacedOptions, form: Format) -> tuple[
     if options.unit != "auto":
         return float(options.unit), "as given"
     height = storey.height if storey else 0.0
-    tallest = TALLEST_OF_METRES if form.metres else STOREY_M[1]
-    if STOREY_M[0] <= height <= tallest:
-        return 1.0, f"as a storey is {height:.2f} high"
-    names = {UNITS[word]: name for word, name in UNIT_NAMES.items()}
-    fitting = {unit: name for unit, name in names.items() if STOREY_M[0] <= height * unit <= STOREY_M[1]}
-    if not fitting:
-        return 1.0, f"though a storey is {height:.2g} high, as no other unit fits"
-    unit = min(fitting, key=lambda metres: abs(np.log(height * metres / USUAL_STOREY_M)))
-    return unit, f"the {fitting[unit]}, as a storey is {height:.4g} high"
+    own = [("m", (STOREY_M[0], TALLEST_OF_METRES))] if form.metres else []
+    for word, (lowest, highest) in (*own, *STOREYS_OF_UNITS):
+        if lowest <= height * UNITS[word] <= highest:
+            what = f"{height:.2f} high" if word == "m" else f"{height:.4g} high"
+            name = "" if word == "m" else f"the {UNIT_NAMES[word]}, "
+            return UNITS[word], f"{name}as a storey is {what}"
+    return 1.0, f"though a storey is {height:.2g} high, as no other unit fits"
+
+
+def _floor_words(storey: Storey, unit: float) -> str:
+    others = " and ".join(f"{height * unit:.3g}" for height in storey.others)
+    also = f"; another is at {others} m: scene option floor chooses" if others else ""
+    return f"a level surface of {_coverage(storey):.0%} of the rectangle{also}"
 
 
 def _coverage(storey: Storey | None) -> float:
@@ -181,16 +196,3 @@ def _to_origin(triangles: FloatArray, T_world_file: FloatArray) -> list[str]:
         return []
     T_world_file[:2, 3] = -centre_xy
     return [f"moved by ({-centre_xy[0]:.2f}, {-centre_xy[1]:.2f}) m, to the origin"]
-
-
-def _floor_areas(part: Part) -> tuple[float, float]:
-    """Area of the part's faces at z = 0 that look down, and up."""
-    triangles = part.vertices[part.faces].astype(np.float64)
-    at_floor = triangles[np.abs(triangles[..., 2]).max(axis=1) < FLOOR_M]
-    normals = np.cross(at_floor[:, 1] - at_floor[:, 0], at_floor[:, 2] - at_floor[:, 0]) / 2.0
-    upward = normals[:, 2] / np.maximum(np.linalg.norm(normals, axis=1), 1e-12)
-    return -float(normals[upward < -FLOOR_COSINE, 2].sum()), float(normals[upward > FLOOR_COSINE, 2].sum())
-
-
-def _inside_out(part: Part) -> Part:
-    return replace(part, faces=part.faces[:, ::-1])

@@ -80,8 +80,8 @@ def _noticed(points: FloatArray, lights: Lights) -> list[IntArray]:
     power = np.array([lamp.intensity * AT_1_M for lamp in lamps] + [PANE / np.pi * window.intensity for window in windows])
     power[len(lamps) :] *= areas
     most = power / np.maximum(cdist(points, places) - reach, NEAREST_M) ** 2
-    noticed = most > NEGLIGIBLE / max(len(power), 1) * most.sum(axis=1, keepdims=True)
-    return [np.flatnonzero(near) for near in noticed.T]
+    weak = most < NEGLIGIBLE / max(len(power), 1) * most.sum(axis=1, keepdims=True)
+    return [np.flatnonzero(near) for near in ~weak.T]
 
 
 def _lamp_light(points: FloatArray, normals: FloatArray, lamp: Lamp, count: int, rays: Rays) -> FloatArray:

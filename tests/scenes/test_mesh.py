@@ -130,7 +130,9 @@ def test_a_room_comes_with_what_was_assumed(tmp_path):
 
 def test_a_real_house(shared_data):
     house = read_mesh(shared_data / "scenes" / "aws_small_house.glb", AUTO)
-    assert house.assumptions[0] == "up axis: z, seen in the geometry (glTF says y)"
+    assert house.assumptions[0] == (
+        "up axis: z, seen in the geometry (glTF says y, but a storey would be 8.6 high with y up, not 3)"
+    )
     assert sum(len(part.faces) for part in house.parts) == 145_840
     assert len({id(part.material.texture) for part in house.parts if part.material.texture is not None}) == 64
     vertices = np.concatenate([part.vertices for part in house.parts])
@@ -195,6 +197,47 @@ def test_what_is_clear_is_left_out_and_what_shines_has_its_light(tmp_path):
     np.testing.assert_allclose(part.material.colour, [1.0, 1.0, 0.7354], atol=0.003)
 
 
+UNLIT: dict[str, object] = {"extensions": {"KHR_materials_unlit": {}}}
+BLACK = {"baseColorFactor": [0, 0, 0, 1]}
+PICTURE = {"index": 0}
+
+
+@pytest.mark.parametrize(
+    ("material", "colour", "has_texture", "shines"),
+    [
+        (TEXTURED | UNLIT, (1, 1, 1), True, True),
+        (UNLIT | {"emissiveFactor": [1, 1, 1], "pbrMetallicRoughness": BLACK}, (0, 0, 0), False, True),
+        # An emissive texture is the picture where there is no other, in the factor's colour.
+        ({"emissiveFactor": [1, 1, 0.5], "emissiveTexture": PICTURE}, (1, 1, 0.7354), True, True),
+        (
+            {"emissiveFactor": [1, 1, 1], "emissiveTexture": PICTURE, "pbrMetallicRoughness": BLACK},
+            (1, 1, 1),
+            True,
+            True,
+        ),
+        (TEXTURED | {"emissiveFactor": [1, 1, 1], "emissiveTexture": PICTURE}, (1, 1, 1), True, True),
+        (TEXTURED | {"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 1}}, (1, 1, 1), True, False),
+        (TEXTURED | {"emissiveFactor": [1, 1, 1]}, (1, 1, 1), True, True),
+        # A glow is none.
+        ({"emissiveFactor": [0.4, 0, 0], "pbrMetallicRoughness": BLACK}, (0, 0, 0), False, False),
+        ({"emissiveFactor": [0.4, 0, 0], "emissiveTexture": PICTURE}, (1, 1, 1), False, False),
+    ],
+)
+def test_light_that_is_in_a_material(tmp_path, material, colour, has_texture, shines):
+    path = gltf(tmp_path / "wall.gltf", material, uri(png()))
+    tree = json.loads(path.read_text())
+    tree["images"].append({"uri": uri(png(PRINT[::-1]))})
+    tree["textures"].append({"source": 1})
+    path.write_text(json.dumps(tree))
+    house = read_mesh(path, AS_IT_IS)
+    (part,) = house.parts
+    assert part.material.colour == pytest.approx(colour, abs=0.003)
+    assert (part.material.texture is not None) is has_texture
+    assert (part.light is not None) is shines
+    assert has_texture is False or (part.material.texture == PRINT).all()
+    assert house.defects == ()
+
+
 def test_clear_materials_of_obj_are_told(tmp_path):
     path = obj(tmp_path / "wall.obj", "newmtl print\nKd 1 1 1\nd 0.1\n")
     path.write_text(path.read_text() + "usemtl frame\nf 1 2 3\n")
@@ -234,6 +277,20 @@ def test_colours_of_vertices_and_faces(tmp_path):
     (tmp_path / "f.ply").write_text(f"{header}{faces}{rgb}end_header\n" + "\n".join(corners) + f"\n{face}")
     (part,) = read_mesh(tmp_path / "f.ply", AS_IT_IS).parts
     assert part.colour[part.faces].tolist() == [[[1, 0, 0]] * 3, [[0, 0, 1]] * 3]
+
+
+def test_texture_coordinates_that_are_not_the_first(tmp_path):
+    moved = {"KHR_texture_transform": {"texCoord": 1}}
+    for picture in ({"index": 0, "texCoord": 1}, {"index": 0, "texCoord": 7, "extensions": moved}):
+        material = {"name": "print", "pbrMetallicRoughness": {"baseColorTexture": picture}}
+        path = gltf(tmp_path / "wall.gltf", material, uri(png()))
+        tree = json.loads(path.read_text())
+        attributes = tree["meshes"][0]["primitives"][0]["attributes"]
+        attributes |= {"TEXCOORD_1": attributes["TEXCOORD_0"], "TEXCOORD_0": len(tree["accessors"])}
+        tree["accessors"].append({"componentType": 5126, "count": 4, "type": "VEC2"})  # all zero
+        path.write_text(json.dumps(tree))
+        (part,) = read_mesh(path, AS_IT_IS).parts
+        assert [colour_at(part, corner) for corner in range(4)] == [BLUE, WHITE, GREEN, RED]
 
 
 # Bad input
@@ -335,6 +392,58 @@ def test_truncated_files_are_refused(wall_files):
         path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
         with pytest.raises(SceneError, match="cannot be read"):
             read_mesh(path, AS_IT_IS)
+
+
+def test_what_is_no_triangle_is_told_and_the_rest_is_used(tmp_path):
+    path = gltf(tmp_path / "wall.gltf", nodes=[{"name": "wall", "mesh": 0}, {"name": "edge", "mesh": 1}])
+    tree = json.loads(path.read_text())
+    (wall,) = tree["meshes"][0]["primitives"]
+    unindexed = {"attributes": wall["attributes"]}
+    tree["meshes"] = [
+        {"name": "wall", "primitives": [wall, unindexed, wall | {"mode": 6}, wall | {"mode": 5}]},
+        {"name": "edge", "primitives": [wall | {"mode": mode} for mode in (0, 1, 2, 3)]},
+    ]
+    tree["nodes"][1]["children"] = [2]
+    tree["nodes"].append({"name": "below", "mesh": 0, "translation": [0, 0, -5]})
+    path.write_text(json.dumps(tree))
+    house = read_mesh(path, AS_IT_IS)
+    # Twice, as the edge's child stands: two indexed triangles, one of four corners, three with an area of a strip.
+    assert sum(len(part.faces) for part in house.parts) == 2 * (2 + 1 + 3)
+    assert house.defects[:2] == (
+        "wall.gltf: primitives left out: expected triangles or strips of them, got others, in 'wall', 'edge'",
+        "wall.gltf: corners left out: expected three for each triangle, got a rest, in 'wall'",
+    )
+    tree["meshes"] = [{"name": "wall", "primitives": [wall | {"mode": 6}]}]
+    tree |= {"scenes": [{"nodes": [0]}], "nodes": tree["nodes"][:1]}
+    path.write_text(json.dumps(tree))
+    with pytest.raises(SceneError, match="expected triangles or strips of them, got others, in 'wall'"):
+        read_mesh(path, AS_IT_IS)
+
+
+def test_a_changed_header_goes_with_the_binary_content_of_a_glb(tmp_path):
+    rest = trimesh.Trimesh(WALL, QUAD, process=False)
+    rest.export(tmp_path / "wall.glb")
+    data = (tmp_path / "wall.glb").read_bytes()
+    end = 20 + int.from_bytes(data[12:16], "little")
+    tree = json.loads(data[20:end])
+    tree["accessors"][tree["meshes"][0]["primitives"][0]["indices"]]["count"] = 5
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    size = (20 + len(text) + len(data) - end).to_bytes(4, "little")
+    head = data[:8] + size + len(text).to_bytes(4, "little") + data[16:20]
+    (tmp_path / "wall.glb").write_bytes(head + text + data[end:])
+    house = read_mesh(tmp_path / "wall.glb", AS_IT_IS)
+    assert [part.vertices[part.faces].tolist() for part in house.parts] == [[WALL[:3].tolist()]]
+    assert "corners left out" in house.defects[0]
+
+
+def test_instances_are_told(tmp_path):
+    more = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}
+    house = read_mesh(gltf(tmp_path / "w.gltf", nodes=[{"name": "row", "mesh": 0, "extensions": more}]), AS_IT_IS)
+    assert len(house.parts) == 1
+    assert house.defects == (
+        "w.gltf: instances left out: expected a node for each, got EXT_mesh_gpu_instancing, in 'row'",
+    )
 
 
 def test_too_much_is_refused(tmp_path):

@@ -7,9 +7,8 @@ import trimesh
 
 from slamgym.errors import OutputError, SceneError
 from slamgym.scenes.export import write_glb
-from slamgym.scenes.export.glb import srgb_to_linear
 from slamgym.scenes.extras import Extras, read_extras
-from slamgym.scenes.house import House
+from slamgym.scenes.house import House, Material
 from slamgym.scenes.importing.placed_options import PlacedOptions
 from slamgym.scenes.mesh import read_mesh
 
@@ -49,7 +48,6 @@ def test_colours_are_linear_in_gltf(written):
     white = next(item for item in tree(written)["materials"] if item["name"] == "paint: white")
     # IEC 61966-2-1: ((0.9 + 0.055) / 1.055)^2.4, and so on.
     assert white["pbrMetallicRoughness"]["baseColorFactor"] == pytest.approx([0.78741, 0.69207, 0.03310, 1], abs=1e-4)
-    assert srgb_to_linear([0.0, 0.04, 0.5, 1.0]) == pytest.approx([0.0, 0.04 / 12.92, 0.21404, 1.0], abs=1e-5)
 
 
 def test_what_is_lit_is_marked_as_unlit(written):
@@ -65,6 +63,39 @@ def test_what_shines_by_itself_does_so_when_read_back(written):
     shining = [part for part in again.parts if part.light is not None]
     assert [part.vertices[0, 2] for part in shining] == [pytest.approx(0.7)]  # the table's top
     assert shining[0].material.texture is not None
+
+
+@pytest.mark.parametrize("colour", [(1.0, 0.95, 0.86), (0.9, 0.5, 0.2), (0.4, 0.4, 0.4), (0.05, 0.0, 0.0)])
+def test_a_bulb_keeps_its_colour_and_its_light(house, tmp_path, colour):
+    bulb = replace(house.parts[5], material=Material("bulb", colour), light=np.ones((4, 3), np.float32))
+    again = read_mesh(write_glb(replace(house, parts=(*house.parts, bulb)), tmp_path / "bulb.glb"), PlacedOptions())
+    (copy,) = (part for part in again.parts if part.material.name == "bulb")
+    assert copy.material.colour == pytest.approx(colour, abs=0.02)
+    assert (copy.light == 1.0).all()
+
+
+def test_only_what_shines_by_itself_is_emissive(house, tmp_path):
+    light = np.ones((4, 3), np.float32)
+    path = write_glb(replace(house, parts=(*house.parts, replace(house.parts[5], light=light))), tmp_path / "some.glb")
+    emissive = [item for item in tree(path)["materials"] if "emissiveFactor" in item]
+    assert [item["name"] for item in emissive] == ["paint: white", "tiles"]
+    for item in emissive:
+        look = item["pbrMetallicRoughness"]
+        assert item["emissiveFactor"] == look["baseColorFactor"][:3]
+        assert item.get("emissiveTexture") == look.get("baseColorTexture")
+    baked = replace(house, parts=tuple(replace(part, light=light) for part in house.parts))
+    path = write_glb(baked, tmp_path / "baked.glb")
+    assert not any("emissiveFactor" in item for item in tree(path)["materials"])
+    assert all("extensions" in item for item in tree(path)["materials"])
+
+
+def test_what_is_not_solid_stays_so(house, tmp_path):
+    # Of the table only the drawer, and all of the lamp.
+    soft = tuple(replace(p, solid=p.name not in ("table_1/drawer", "floor_lamp_1/shade")) for p in house.parts)
+    again = read_mesh(write_glb(replace(house, parts=soft), tmp_path / "soft.glb"), PlacedOptions())
+    heights = sorted(float(part.vertices[0, 2]) for part in again.parts if not part.solid)
+    assert heights == pytest.approx([0.6, 1.6])
+    assert len(again.parts) == len(house.parts)
 
 
 def test_baked_light_is_light_again(house, tmp_path):
@@ -95,7 +126,17 @@ def test_rooms_lamps_and_windows_are_in_the_extras(house, written):
     assert extras == Extras(house.rooms, house.lamps, house.windows, False)
     again = read_mesh(written, PlacedOptions())
     assert (again.rooms, again.lamps, again.windows) == (house.rooms, house.lamps, house.windows)
-    assert read_mesh(written, PlacedOptions(up="y")).rooms == ()
+
+
+def test_options_that_say_how_the_file_lies_change_nothing(house, written):
+    for options in (PlacedOptions(up="y"), PlacedOptions(unit="m", floor=0.0)):
+        again = read_mesh(written, options)
+        assert (again.rooms, again.lamps) == (house.rooms, house.lamps)
+        assert not any("not used" in line for line in again.assumptions)
+    for options in (PlacedOptions(up="z", floor=0.0), PlacedOptions(unit=2.0), PlacedOptions(up="y", floor=1.0)):
+        again = read_mesh(written, options)
+        assert (again.rooms, again.lamps, again.windows) == ((), (), ())
+        assert again.assumptions[-1].startswith("rooms, lamps and windows of the file: not used, as up, unit or floor")
 
 
 @pytest.mark.parametrize("extras", [None, {}, 3, {"other": 3}])

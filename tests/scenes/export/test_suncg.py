@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -67,6 +68,23 @@ def test_written_again_it_has_the_same_rooms(written, tmp_path):
     again = write_suncg(read_suncg(written, SuncgOptions()), tmp_path / "again")
     shape = [(node["type"], node.get("hideCeiling")) for node in nodes(written)]
     assert [(node["type"], node.get("hideCeiling")) for node in nodes(again)] == shape
+
+
+@pytest.mark.parametrize(
+    ("name", "is_shell"),
+    [
+        *((name, True) for name in ("wall", "Wall_3", "WALL.001", "wall 2", "wall-2", "wall_1_1", "wall#0_2", "wall2")),
+        *(
+            (name, False)
+            for name in ("wall_shelf_2", "wall-clock", "wall clock 2", "wallpaper_1", "wall2_rug", "walls")
+        ),
+    ],
+)
+def test_only_a_number_may_follow_in_the_name_of_a_shell(house, tmp_path, name, is_shell):
+    part = replace(house.parts[3], name=f"{name}/inner")
+    path = write_suncg(replace(house, parts=(*house.parts[:2], part)), tmp_path / "root")
+    assert [node["hideWalls"] for node in nodes(path) if node["type"] == "Room"] == [int(not is_shell), 1]
+    assert any(node["type"] == "Object" for node in nodes(path)) is not is_shell
 
 
 def test_a_procedural_house_round_trip(tmp_path, matched):

@@ -59,7 +59,7 @@ def test_axis_and_unit_are_seen(up, unit):
 
 def test_what_was_taken_for_granted_is_told():
     assert placement(in_file(flat(), "y", 0.01), AUTO, FORMATS["ply"]).assumptions == [
-        "up axis: y, seen in the geometry (.ply says z)",
+        "up axis: y, seen in the geometry (.ply says z, but a storey would be 500 high with z up, not 250)",
         "unit: 0.01 m, the centimetre, as a storey is 250 high",
         "floor: at 0 m, a level surface of 100% of the rectangle",
     ]
