@@ -44,7 +44,7 @@ EXPORTS: dict[str, Callable[[Stage, FilePath], object]] = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SceneReport:
-    """views: colour images (H, W, 3) along the path, at the distances `views_m`, metres. figures: those of scene.json."""
+    """views: colour images (H, W, 3) along the path, at the distances `views_m`, metres. figures: as in scene.json."""
 
     stage: Stage
     path: Path

@@ -84,8 +84,8 @@ def lowest_storey(triangles: FloatArray, axis: int) -> Storey | None:
         gaps[gaps > SLAB * gaps.max()].min(initial=gaps.max()) >= (1.0 - EVEN) * gaps.max()
         and min(level.area for level in large) >= (1.0 - WIDE) * floor.area
     )
-    # What looks down is the lower side of a slab.
-    meant = {level.height for level in [*low, *(level for level, _ in houses)] if level.upward > 0.0}
+    # Of those low the one that looks down is the lower side of a slab.
+    meant = {level.height for level in low if level.upward > 0.0} | {level.height for level, _ in houses}
     others = tuple(sorted(meant - {floor.height}))
     coverage, covered = (min(1.0, level.area / around) for level in (floor, ground))
     return Storey(floor, coverage, covered, height, floor.height - lowest, bool(even), others)
@@ -136,11 +136,9 @@ def _houses(
             continue
         beside = 0.05 * (high - low)  # where a wall's outer side is
         there = ((centres >= low - beside) & (centres <= high + beside)).all(axis=1)
-        share = weights[there & (heights[upright] > level.height)].sum() / max(
-            float(weights.sum()), np.finfo(float).tiny
-        )
-        if share >= MAY_STAND_ON:
-            houses.append((level, bool(share >= STANDS_ON)))
+        standing = float(weights[there & (heights[upright] > level.height)].sum())
+        if standing >= MAY_STAND_ON * weights.sum() > 0.0:
+            houses.append((level, bool(standing >= STANDS_ON * weights.sum())))
     return houses
 
 

@@ -11,9 +11,11 @@ from slamgym.types import FloatArray
 SURE = 1.25
 """How much better than the format's another axis must look."""
 LYING = 2.5
-"""How much flatter a house of one storey is than its own storeys would be that are not even."""
+"""How much longer than a house of one storey is high it is along its floor, at least."""
+DEEP = 1.5
+"""By the height of a storey, the depth of rooms in even rows, which are no storeys."""
 ROOM_M = (2.0, 4.5)
-"""Height of a storey from which an axis may be up."""
+"""How high a storey is when an axis may be up."""
 NARROWEST_M = 1.2
 """A scene's least width in a unit that is not the metre; inches taken for centimetres give less."""
 LOW = 0.5
@@ -70,8 +72,9 @@ def _misfit(storey: Storey | None, extents: FloatArray, up: int, units: Sequence
 
 
 def _lies(storeys: Sequence[Storey | None], extents: FloatArray, own: int, other: int) -> bool:
-    """Whether it is a house of one storey with `other` up, whose walls make uneven storeys with `own` up."""
+    """Whether it is a house of one storey with `other` up, whose walls make odd storeys with `own` up."""
     upright, lying = storeys[other], storeys[own]
     if upright is None or lying is None or extents[other] > SURE * room_height(upright):
         return False
-    return not lying.even and bool(extents[own] > LYING * extents[other])
+    stacked = lying.even and room_height(lying) < DEEP * room_height(upright)
+    return not stacked and bool(extents[own] > LYING * extents[other])

@@ -104,8 +104,8 @@ def _checked(parts: Sequence[Part]) -> Sequence[Part]:
     for part in parts:
         if part.light is not None and not np.isfinite(part.light).all():
             raise SceneError(
-                f"expected finite light, got NaN or infinity in part {part.name!r}; lamps or windows of the house are the "
-                "cause: give them finite places and colours, and intensities of at most 1000"
+                f"expected finite light, got NaN or infinity in part {part.name!r}; lamps or windows of the house are "
+                "the cause: give them finite colours and intensities of at most 1000"
             )
     return parts
 

@@ -21,7 +21,7 @@ from slamgym.scenes.house import House, Part
 from slamgym.scenes.importing.data_root import read_plain
 from slamgym.scenes.light.bake import bake_light
 
-VERSION = 2
+VERSION = 3
 """Goes up when `bake_light` gives other light for the same house."""
 MOST_BYTES = 2_000_000_000
 WAIT_S = 120.0

@@ -77,11 +77,11 @@ def _noticed(points: FloatArray, lights: Lights) -> list[IntArray]:
     areas = 4.0 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     places = np.array([*(lamp.position for lamp in lamps), *(window.centre for window in windows)]).reshape(-1, 3)
     reach = np.array([*(lamp.radius for lamp in lamps), *np.linalg.norm(sides, axis=2).sum(axis=1)])
-    power = np.array([lamp.intensity * AT_1_M for lamp in lamps] + [PANE / np.pi * window.intensity for window in windows])
-    power[len(lamps) :] *= areas
+    panes = [PANE / np.pi * window.intensity * area for window, area in zip(windows, areas, strict=True)]
+    power = np.array([*(AT_1_M * lamp.intensity for lamp in lamps), *panes])
     most = power / np.maximum(cdist(points, places) - reach, NEAREST_M) ** 2
     weak = most < NEGLIGIBLE / max(len(power), 1) * most.sum(axis=1, keepdims=True)
-    return [np.flatnonzero(near) for near in ~weak.T]
+    return [np.flatnonzero(near) for near in ~weak.T]  # not `>=`: what is not finite has to show in the light
 
 
 def _lamp_light(points: FloatArray, normals: FloatArray, lamp: Lamp, count: int, rays: Rays) -> FloatArray:

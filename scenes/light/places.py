@@ -64,7 +64,7 @@ def _roof(rays: Rays, low: FloatArray, high: FloatArray) -> tuple[FloatArray, Fl
     """The rectangle (2,), (2,) around what has a roof above between low and high; None where nothing has."""
     x, y = _middles(low, high, max(GRID_M, float((high - low).max()) / PROBES_MOST))
     probes = np.stack(np.meshgrid(x, y, HEIGHTS_M[-1], indexing="ij"), axis=-1).reshape(-1, 3)
-    roofed = ndimage.binary_opening(_roofed(rays, probes).reshape(len(x), len(y)), np.ones((2, 2)))
+    roofed = ndimage.binary_opening(_roofed(rays, probes).reshape(len(x), len(y)), np.ones((2, 2), dtype=bool))
     step = (high - low) / roofed.shape
     if np.count_nonzero(roofed) * step.prod() < LEAST_ROOF_M2:
         return None
@@ -73,7 +73,7 @@ def _roof(rays: Rays, low: FloatArray, high: FloatArray) -> tuple[FloatArray, Fl
 
 
 def _middles(low: FloatArray, high: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
-    """x and y of the middles of cells of about `step` metres that fill the rectangle."""
+    """Coordinates x and y of the middles of cells of about `step` metres that fill the rectangle."""
     x, y = (np.linspace(a, b, 2 * max(1, round((b - a) / step)) + 1)[1::2] for a, b in zip(low, high, strict=True))
     return x, y
 

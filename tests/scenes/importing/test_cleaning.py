@@ -90,6 +90,18 @@ def test_a_garden_shed_stays():
     assert faces(clean([*room(), box("shed", (25, 0, 0), (28, 3, 2.2))])[0]) == faces(room()) + 12
 
 
+def test_what_is_less_than_ten_times_the_house_away_stays():
+    post = box("post", (15, 1, 0), (15.1, 1.1, 1))
+    assert faces(clean([*room(), post])[0]) == faces(room()) + 12
+    far_post = box("post", (60, 1, 0), (60.1, 1.1, 1))
+    assert faces(clean([*room(), far_post])[0]) == faces(room())
+
+
+def test_a_large_plane_does_not_make_its_house_an_outlier():
+    plane = piece("plane", [[0, 0, 0], [600, 0, 0], [0, 600, 0]], [[0, 1, 2]])
+    assert faces(clean([*room(), plane])[0]) == faces(room()) + 1
+
+
 def test_a_dense_statue_does_not_make_its_house_an_outlier():
     sphere = trimesh.creation.icosphere(subdivisions=5, radius=0.2)
     statue = piece("statue", sphere.vertices + 1.0, sphere.faces)

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -84,6 +85,15 @@ def test_glb_is_in_metres_also_in_a_tall_hall():
     assert placement(hall, AUTO, FORMATS["stl"]).assumptions[1] == "unit: 0.3048 m, the foot, as a storey is 9 high"
 
 
+@pytest.mark.parametrize(
+    ("height", "unit"),
+    [(6.8, "1 m"), (7.0, "1 m"), (8.5, "0.3048 m"), (11.8, "1 m"), (14.0, "0.3048 m"), (98, "0.0254 m")],
+)
+def test_feet_and_inches_are_of_usual_storeys(height, unit):
+    hall = [box("hall", (0, 0, 0), (4.0 * height, 3.0 * height, height))]
+    assert placement(hall, AUTO, FORMATS["ply"]).assumptions[1].startswith(f"unit: {unit}, ")
+
+
 def test_what_is_given_is_used():
     found = placement(flat(), PlacedOptions(up="x", unit=2.0, floor=0.5), FORMATS["glb"])
     corner = found.T_world_file @ [1.0, 2.0, 3.0, 1.0]
@@ -115,6 +125,83 @@ def test_a_floor_alone_is_a_scene_and_a_ball_is_none():
     with pytest.raises(SceneError, match=r"no floor found: .* got 4% .* give the scene options up, unit and floor"):
         placement([piece], AUTO, FORMATS["ply"])
     assert placement([piece], PlacedOptions(floor=-1.0), FORMATS["ply"]).T_world_file[2, 3] == 1.0
+
+
+def storeys(count, length, width, height=2.6, pitch=3.0):
+    return [box(f"storey{k}", (0, 0, pitch * k), (length, width, pitch * k + height)) for k in range(count)]
+
+
+NARROW = {
+    "corridor": storeys(1, 20, 1.5, 2.7),
+    "bathroom": [*storeys(1, 2.2, 1.7, 2.5), box("tub", (0, 0, 0), (1.6, 0.7, 0.5))],
+    "room": storeys(1, 3.5, 2.0),
+    "corridors": storeys(2, 12, 2.2),
+    "terraced house": storeys(3, 5, 9),
+    "tower": storeys(4, 12, 10),
+    "high tower": storeys(10, 12, 10),
+    "slim tower": storeys(8, 4, 4),
+    "block": storeys(8, 30, 20),
+    "tower on a lawn": [*storeys(6, 12, 10), slab("lawn", (-20, -20, -0.3), (40, 40, -0.3))],
+}
+
+
+@pytest.mark.parametrize("kind", ["glb", "obj", "ply"])
+@pytest.mark.parametrize("pieces", NARROW.values(), ids=NARROW)
+def test_narrow_and_tall_scenes_stand(pieces, kind):
+    form = FORMATS[kind]
+    found = placement(in_file(pieces, form.up, 1.0), AUTO, form)
+    assert found.assumptions[:2] == [f"up axis: {form.up}, as {form.name} has it", found.assumptions[1]]
+    assert found.assumptions[1].startswith("unit: 1 m, as a storey is 2.")
+    assert found.T_world_file[2, 3] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_galley_kitchen_without_ceiling_stands():
+    counter = box("counter", (0, 0, 0), (3, 0.6, 0.9))
+    kitchen = [without(box("kitchen", (0, 0, 0), (3, 1.8, 2.6)), 2, 1), counter]
+    told = placement(in_file(kitchen, "y", 1.0), AUTO, FORMATS["glb"]).assumptions
+    assert told[:2] == ["up axis: y, as glTF has it", "unit: 1 m, as a storey is 2.60 high"]
+
+
+@pytest.mark.parametrize("depths", [(4.2, 3.9), (3.2, 1.4, 3.4)])
+def test_rooms_in_rows_are_no_storeys(depths):
+    edges = np.cumsum([0, *depths])
+    rows = [box(f"row{k}", (0, y0, 0), (10, y1, 2.5)) for k, (y0, y1) in enumerate(pairwise(edges))]
+    for up, kind in (("z", "glb"), ("z", "obj"), ("y", "stl")):
+        told = placement(in_file(rows, up, 1.0), AUTO, FORMATS[kind]).assumptions[0]
+        assert told.startswith(f"up axis: {up}, seen in the geometry")
+
+
+def test_a_tower_has_its_floor_below_also_when_up_is_given():
+    corners = np.concatenate([p.vertices[p.faces] for p in storeys(12, 12, 10)])
+    storey = lowest_storey(corners, axis=2)
+    assert (storey.floor.height, storey.height) == pytest.approx((0.0, 2.6))
+    assert placement(storeys(12, 12, 10), PlacedOptions(up="z"), FORMATS["glb"]).T_world_file[2, 3] == 0.0
+
+
+LAWN = slab("lawn", (-15, -15, 0), (25, 25, 0))
+RAISED = box("house", (0, 0, 0.3), (10, 8, 2.9))
+
+
+def test_a_house_above_its_lawn_is_the_floor_and_both_are_told():
+    found = placement([LAWN, RAISED], AUTO, FORMATS["stl"])
+    assert found.T_world_file[2, 3] == pytest.approx(-0.3)
+    assert found.assumptions[2] == (
+        "floor: at 0.3 m, a level surface of 5% of the rectangle; another is at 0 m: scene option floor chooses"
+    )
+
+
+def test_a_fence_leaves_it_open_and_tells_both():
+    fence = without(box("fence", (-15, -15, 0), (25, 25, 0.4)), 2, 0)
+    told = placement([LAWN, RAISED, fence], AUTO, FORMATS["stl"]).assumptions[2]
+    assert told.startswith("floor: at 0 m, ")
+    assert told.endswith("; another is at 0.3 m: scene option floor chooses")
+
+
+def test_a_platform_in_a_room_is_not_its_floor():
+    room = [box("room", (0, 0, 0), (8, 5, 2.6)), box("stage", (0, 0, 0), (3, 3, 0.3))]
+    assert placement(room, AUTO, FORMATS["stl"]).assumptions[2] == (
+        "floor: at 0 m, a level surface of 100% of the rectangle"
+    )
 
 
 def without(piece, axis, sign):
@@ -177,6 +264,29 @@ def test_a_floor_that_looks_down_is_turned_and_furniture_is_not():
     assert (np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0).all()
     assert (parts[1].faces == table.faces).all()
     assert placed([floor, table], np.eye(4))[1] == []
+
+
+def test_floors_of_rooms_are_turned_one_by_one_under_their_furniture():
+    floors = [slab(f"floor{k}", (3 * k, 0, 0), (3 * k + 3, 3, 0)) for k in range(12)]
+    beds = [box(f"bed{k}", (3 * k + 1, 0, 0), (3 * k + 3, 2, 0.5)) for k in range(12)]
+    for wrong in (range(12), [4]):
+        given = [turned_over(floor) if k in wrong else floor for k, floor in enumerate(floors)]
+        parts, told = placed([*beds, *given], np.eye(4))
+        assert told == [f"turned inside out, as its floor looked down: 'floor{k}'" for k in wrong]
+        assert all((np.sort(part.faces) == np.sort(bed.faces)).all() for part, bed in zip(parts, beds, strict=False))
+        for part in parts[12:]:
+            a, b, c = part.vertices[part.faces[0]]
+            assert np.cross(b - a, c - a)[2] > 0
+
+
+def test_what_is_smaller_than_a_floor_is_not_turned():
+    stool = box("stool", (1, 1, 0), (1.6, 1.6, 0.5))
+    assert placed([stool], np.eye(4))[1] == []
+
+
+def test_halves_of_a_house_seen_from_outside_are_turned():
+    halves = [box("west", (0, 0, 0), (4, 5, 2.5)), box("east", (4, 0, 0), (8, 5, 2.5))]
+    assert [line.rpartition(" ")[2] for line in placed(halves, np.eye(4))[1]] == ["'west'", "'east'"]
 
 
 def test_map_coordinates_keep_their_millimetres():

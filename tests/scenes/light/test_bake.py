@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from slamgym.errors import SceneError
 from slamgym.scenes.house import House, Lamp, Material, Part, Window
-from slamgym.scenes.light.bake import MAX_EDGE_M, bake_light
-from slamgym.scenes.light.refine import face_normals
+from slamgym.scenes.light.bake import MAX_EDGE_M, _smoothed, bake_light
+from slamgym.scenes.light.refine import face_normals, join, subdivide
 from slamgym.types import FloatArray
 
 GREY = Material("grey", (0.7, 0.7, 0.7))
@@ -146,12 +146,29 @@ def test_no_light_leaks_through_a_wall() -> None:
     assert light_of(dark).max() < 0.5 * np.median(light_of(lit))
 
 
-def test_no_light_leaks_through_a_thin_wall() -> None:
-    """Points where light is computed lie closer to their surface than 5 cm."""
+def test_no_light_leaks_to_what_stands_close_behind_a_thin_wall() -> None:
+    """The points where the light of the chest's back is computed lie on its side of the wall, 10 cm away."""
     rooms = [box("lit", (-4, -2, 0), (0, 2, 2.5), True), box("dark", (0.05, -2, 0), (4, 2, 2.5), True)]
-    lit, dark = bake_light(House("two", tuple(rooms), lamps=(Lamp((-1.0, 0.0, 1.2)),))).parts
-    beside = brightness(lit, (0.0, 0.0, 1.2), (1, 0, 0))
-    assert brightness(dark, (0.05, 0.0, 1.2), (1, 0, 0)) < 0.5 * beside
+    chest = box("chest", (0.1, -1, 0), (1, 1, 1.5))
+    lit, _, back = bake_light(House("two", (*rooms, chest), lamps=(Lamp((-1.0, 0.0, 1.2)),))).parts
+    assert brightness(back, (0.1, 0.0, 1.0), (1, 0, 0)) < 0.5 * brightness(lit, (0.0, 0.0, 1.0), (1, 0, 0))
+
+
+def test_a_warm_lamp_comes_out_nearly_white() -> None:
+    lamp = replace(LAMP, colour=(1.0, 0.7, 0.4))
+    red, _, blue = light_of(bake_light(room(lamps=(lamp,))).parts[0]).mean(axis=0)
+    assert 1.05 < red / blue < 1.3
+
+
+def test_the_edge_of_a_shadow_has_no_steps() -> None:
+    """Factors are mixed with their neighbours': a lone bright vertex keeps half of what it stands out."""
+    surface = subdivide(join([Part("floor", GREY, *_plane(-1.0, 1.0, 0.2))]), 0.5)
+    factors = np.full((len(surface.vertices), 3), 0.2)
+    middle = np.linalg.norm(surface.vertices, axis=1).argmin()
+    factors[middle] = 1.0
+    smoothed = _smoothed(surface, factors)
+    np.testing.assert_allclose(smoothed[middle], 0.6)
+    assert (smoothed.max(axis=1) > 0.21).sum() == 7  # its six neighbours took some
 
 
 def test_daylight_falls_off_from_the_window() -> None:
@@ -182,7 +199,6 @@ def test_a_garden_changes_neither_the_lamps_nor_the_exposure_indoors() -> None:
     "lights",
     [
         {"lamps": (replace(LAMP, intensity=1e308),)},
-        {"lamps": (replace(LAMP, position=(np.nan, 0.0, 1.0)),)},
         {"windows": (Window((-2.0, 0.0, 1.5), (0.0, 0.6, 0.0), (0.0, 0.0, 0.5), intensity=1e308),)},
     ],
 )

@@ -1,9 +1,14 @@
+from dataclasses import replace
+from typing import cast
+
 import numpy as np
 import pytest
 import trimesh
 
 from slamgym.scenes.house import Lamp, Material, Part, Window
 from slamgym.scenes.light.direct import PANE, Lights, direct_light, lights_of
+from slamgym.scenes.light.rays import Rays, rays_of
+from slamgym.types import BoolArray, FloatArray
 
 WHITE_LAMP = Lamp((0.0, 0.0, 2.0), colour=(1.0, 1.0, 1.0), radius=0.01)
 NORTH = Window((0.0, 0.0, 1.5), (0.6, 0.0, 0.0), (0.0, 0.0, 0.5), colour=(1.0, 1.0, 1.0))
@@ -87,3 +92,35 @@ def test_a_lamps_fixture_casts_no_shadow_but_a_table_does() -> None:
     table = box("table", (-0.5, -0.5, 0.7), (0.5, 0.5, 0.75))
     assert light_at(lights_of([shade], [WHITE_LAMP], []), (0.0, 0.0, 0.0), (0, 0, 1)) == pytest.approx(1.0, rel=0.01)
     assert light_at(lights_of([table], [WHITE_LAMP], []), (0.0, 0.0, 0.0), (0, 0, 1)) == 0.0
+
+
+class Counted:
+    """Rays that count what they are asked."""
+
+    def __init__(self) -> None:
+        self.rays, self.asked = rays_of([]), 0
+
+    def blocked(self, origins: FloatArray, directions: FloatArray, distances: FloatArray) -> BoolArray:
+        self.asked += len(origins)
+        return self.rays.blocked(origins, directions, distances)
+
+
+def shadow_rays(lamps: list[Lamp], windows: list[Window]) -> int:
+    counted = Counted()
+    direct_light(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), Lights(lamps, windows, cast("Rays", counted)))
+    return counted.asked
+
+
+def test_lamps_and_windows_too_weak_to_matter_need_no_shadow_rays() -> None:
+    weak = Lamp((0.0, 0.0, 30.0), 0.01)
+    far = replace(NORTH, centre=(0.0, 500.0, 1.5))
+    assert shadow_rays([WHITE_LAMP, weak], [far]) == shadow_rays([WHITE_LAMP], [])
+    assert shadow_rays([weak], []) > 0
+
+
+def test_a_thousand_lamps_cast_few_shadow_rays_each_and_give_the_same_light() -> None:
+    rng = np.random.default_rng(0)
+    lamps = [Lamp((x, y, 2.0), 0.01) for x, y in rng.uniform(-4.0, 4.0, (1000, 2))]
+    assert shadow_rays(lamps, []) <= 1000
+    one_by_one = sum(light_at(lights_of([], [lamp], []), (0, 0, 0), (0, 0, 1)) for lamp in lamps)
+    assert light_at(lights_of([], lamps, []), (0, 0, 0), (0, 0, 1)) == pytest.approx(one_by_one, rel=0.03)

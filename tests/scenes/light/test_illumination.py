@@ -99,6 +99,21 @@ def test_under_furniture_the_floor_takes_the_light_beside_it() -> None:
     assert at(lit, (3.0, 0.0, 0.0)).mean() > 0.5 * at(lit, (1.5, 0.0, 0.0)).mean()
 
 
+def test_points_inside_a_closed_box_are_buried_and_others_are_not() -> None:
+    chest = trimesh.creation.box(bounds=[(2.0, -1.0, -0.01), (4.0, 1.0, 1.0)])
+    part = Part("chest", Material("grey"), np.asarray(chest.vertices, np.float32), np.asarray(chest.faces, np.int32))
+    parts = [floor(), part]
+    surface = subdivide(join([split_creases(one) for one in parts]), 0.5)
+    lit = Illumination(surface, reflectances(surface, parts), (), lights_of(parts, (), []))
+    samples = samples_of(surface)
+    buried = lit.light(samples, lambda _: None)[1]
+    x, y, z = samples.points.T
+    inside = (np.abs(x - 3.0) < 0.9) & (np.abs(y) < 0.9) & (z < 0.1) & (z > 0.0)
+    assert inside.any()
+    assert buried[inside].all()
+    assert not buried[(x < 1.5) | (z > 1.0)].any()
+
+
 def test_a_materials_mean_colour_is_linear_and_takes_its_texture() -> None:
     texture = np.zeros((2, 2, 3), np.uint8)
     texture[0] = 255
