@@ -48,7 +48,7 @@ GROWTH, ALWAYS = 2.5, 20_000
 COARSE_SHARE = 0.7
 """Of the work, the share that is done before vertices are added."""
 
-IMAGINED = "light: no lamps or windows are given, so {} lamps are put under the ceiling"
+IMAGINED = "light: no lamps or windows are given, so {} lamps are put where a ceiling would be"
 
 Progress = Callable[[float], None]
 

@@ -1,4 +1,4 @@
-"""Lamps for a house that came without any light: under the ceiling, so that each place sees one nearby."""
+"""Lamps for a house that came without any light: where a ceiling would be, so that each place sees one nearby."""
 
 import numpy as np
 
