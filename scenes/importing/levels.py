@@ -106,7 +106,7 @@ def _lowest(levels: list[Level], top: float) -> list[Level]:
 
 def _gaps(levels: list[Level], top: float) -> FloatArray:
     """From each level (L,), L > 0, to the next or the scene's top; the largest is about as high as a storey."""
-    return np.maximum(np.diff([*(level.height for level in levels), top]), 0.0)
+    return np.asarray(np.maximum(np.diff([*(level.height for level in levels), top]), 0.0))
 
 
 def _houses(

@@ -44,9 +44,10 @@ def seen_up(storeys: Sequence[Storey | None], extents: FloatArray, own: int, uni
     one with which a storey is most as high as a room; when it is with none, the one along which the scene is flat and
     whose floor fills the rectangle around the scene.
     """
-    misfits = [_misfit(storeys[k], extents, k, units.usual) for k in range(3)]
+    fitting = [_misfit(storeys[k], extents, k, units.usual) for k in range(3)]
+    misfits = [fitting[k] if k == own or _rivals(storeys[k], storeys[own]) else np.inf for k in range(3)]
     best = int(np.argmin(misfits))
-    possible = [k for k in range(3) if np.isfinite(misfits[k]) or not np.isfinite(misfits[own])]
+    possible = [k for k in range(3) if np.isfinite(fitting[k]) or not np.isfinite(fitting[own])]
     if lying := [k for k in possible if _lies(storeys, extents, own, k)]:
         return min(lying, key=lambda k: float(extents[k]))
     if np.isfinite(misfits[own]):
@@ -58,6 +59,11 @@ def seen_up(storeys: Sequence[Storey | None], extents: FloatArray, own: int, uni
     coverage = np.array([storey.ground if storey else 0.0 for storey in storeys])
     scores = coverage / np.maximum(extents, 1e-12)
     return int(scores.argmax()) if scores.max() > SURE * scores[own] else own
+
+
+def _rivals(storey: Storey | None, own: Storey | None) -> bool:
+    """Whether the storey is lower than that of the format's axis, so that a low cellar stands as it is."""
+    return storey is not None and (own is None or room_height(storey) < room_height(own))
 
 
 def _misfit(storey: Storey | None, extents: FloatArray, up: int, units: Sequence[float]) -> float:

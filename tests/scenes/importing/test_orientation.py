@@ -155,6 +155,13 @@ def test_narrow_and_tall_scenes_stand(pieces, kind):
     assert found.T_world_file[2, 3] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.parametrize(("unit", "name"), [(0.3048, "foot"), (0.0254, "inch")])
+def test_a_narrow_room_stands_in_feet_and_inches(unit, name):
+    told = placement(in_file(NARROW["bathroom"], "y", unit), AUTO, FORMATS["obj"]).assumptions
+    assert told[0] == "up axis: y, as .obj has it"
+    assert told[1].startswith(f"unit: {unit:g} m, the {name}")
+
+
 def test_a_galley_kitchen_without_ceiling_stands():
     counter = box("counter", (0, 0, 0), (3, 0.6, 0.9))
     kitchen = [without(box("kitchen", (0, 0, 0), (3, 1.8, 2.6)), 2, 1), counter]
@@ -169,6 +176,46 @@ def test_rooms_in_rows_are_no_storeys(depths):
     for up, kind in (("z", "glb"), ("z", "obj"), ("y", "stl")):
         told = placement(in_file(rows, up, 1.0), AUTO, FORMATS[kind]).assumptions[0]
         assert told.startswith(f"up axis: {up}, seen in the geometry")
+
+
+def test_a_wall_through_the_middle_is_no_storey():
+    house = [box("house", (0, 0, 0), (10, 6.6, 2.5)), box("wall", (0, 3.2, 0), (6.5, 3.4, 2.5))]
+    assert placement(house, AUTO, FORMATS["glb"]).assumptions[0].startswith("up axis: z, seen in the geometry")
+
+
+def test_a_slim_house_of_uneven_storeys_stands():
+    house = [box("below", (0, 0, 0), (8, 2.4, 2.9)), box("above", (0, 0, 3.1), (8, 2.4, 5.2))]
+    assert placement(in_file(house, "y", 1.0), AUTO, FORMATS["glb"]).assumptions[0] == "up axis: y, as glTF has it"
+
+
+@pytest.mark.parametrize("kind", ["glb", "obj", "stl"])
+@pytest.mark.parametrize(
+    "pieces",
+    [
+        storeys(1, 6, 4, 1.9),
+        [slab("floor", (0, 0, 0), (5, 4, 0)), box("shelf", (0, 0, 0), (0.4, 4, 1.8))],
+        [slab("floor", (0, 0, 0), (5, 4, 0)), box("bed", (1, 1, 0), (3, 2, 0.5)), box("board", (4, 0, 0), (5, 1, 1.2))],
+    ],
+)
+def test_what_is_lower_than_a_room_stands(pieces, kind):
+    form = FORMATS[kind]
+    told = placement(in_file(pieces, form.up, 1.0), AUTO, form).assumptions
+    assert told[0] == f"up axis: {form.up}, as {form.name} has it"
+
+
+def test_a_large_table_is_no_ceiling():
+    room = [without(box("room", (0, 0, 0), (6, 5, 2.6)), 2, 1), box("table", (1, 1, 0.7), (5, 4, 0.73))]
+    assert placement(room, AUTO, FORMATS["stl"]).assumptions[1] == "unit: 1 m, as a storey is 2.60 high"
+
+
+def test_low_beds_apart_are_no_floor():
+    beds = [
+        bed
+        for x, y in ((0, 0), (0, 3), (3, 0), (3, 3))
+        for bed in (box("bed", (x, y, 0), (x + 2, y + 1, 0.2)), box("board", (x, y, 0), (x + 0.1, y + 1, 1.2)))
+    ]
+    told = placement([slab("floor", (0, 0, 0), (10, 10, 0)), *beds], AUTO, FORMATS["stl"]).assumptions[2]
+    assert told == "floor: at 0 m, a level surface of 100% of the rectangle"
 
 
 def test_a_tower_has_its_floor_below_also_when_up_is_given():
