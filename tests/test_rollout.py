@@ -76,7 +76,7 @@ def test_a_written_config_repeats_the_drive(episode, tmp_path):
     config = yaml.safe_load((write_run(episode, tmp_path / "run") / "config.yaml").read_text())
     run = config.pop("run")
     assert run["agent"] == "slamgym.agents.follower:PathFollower"
-    assert set(run["versions"]) == {"slamgym", "pyorbslam3", "vocabulary_sha256"}
+    assert set(run["versions"]) == {"slamgym", "house_sha256", "pyorbslam3", "vocabulary_sha256"}
     assert config["slam_options"]["features"] == 1000  # the default, written out
     env = gym.make(run["env_id"], **{**config, "slam": "groundtruth", "slam_options": {}})
     again = run_episode(env, PathFollower(), run["seed"])
