@@ -21,7 +21,7 @@ from slamgym.scenes.loader import SceneOptions
 class HomeOptions(SceneOptions):
     """What a home is like. Its floor plan and main furniture depend on seed and size alone.
 
-    size: small, 4 or 5 rooms; medium, 5 to 7; large, 8 to 11. clutter: how many small things lie about, 1 as in most
+    size: small, 4 rooms; medium, 4 to 7; large, 9 to 11. clutter: how many small things lie about, 1 as in most
     homes. texture: how rich surfaces are, from plain paint (0) over what is usual (1) to strong patterns (2).
     """
 

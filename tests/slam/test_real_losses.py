@@ -90,21 +90,21 @@ class QuickTurn(PathFollower):
 
 @pytest.mark.parametrize("agent", [PathFollower(), QuickTurn()])
 def test_quick_turn(agent):
-    env = gym.make("HomeRobotSLAM-v0", speed=0.3, path_length_m=2.5, fps=FPS, turn_rate=12.0, max_episode_steps=150)
+    # Rich textures, so that the young map has enough to be found again by.
+    params = {"scene_options": {"texture": 2.0}, "speed": 0.3, "turn_rate": 12.0, "path_length_m": 2.5, "fps": FPS}
+    env = gym.make("HomeRobotSLAM-v0", max_episode_steps=150, **params)
     episode = run_episode(env, agent, 7)
     env.close()
     losses = episode.summary["losses"]
     if isinstance(agent, QuickTurn):
         assert losses[0]["start_frame"] in range(60, 75)  # in the turn, or on the way back
-        # At times ORB-SLAM3 throws so young a map away instead.
-        assert losses[0]["outcome"] in ("relocalized", "map_reset")
+        assert losses[0]["outcome"] == "relocalized"
         assert losses[0]["context"]["rotation_rate_degps"] > 200
         assert losses[0]["context"]["cause"] in ("fast_turn", "low_overlap")
-        assert losses[0]["rotation_deg"] > 20  # one frame in the turn, or all of it
+        assert losses[0]["rotation_deg"] > 90
     else:
         assert losses == []
-    assert episode.summary["status"] == "ok"
-    assert episode.summary["maps"] == 1 or losses[0]["outcome"] == "map_reset"
+    assert (episode.summary["status"], episode.summary["maps"]) == ("ok", 1)
 
 
 def wall(blank_from, blank_to):
