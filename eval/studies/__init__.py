@@ -1,0 +1,1 @@
+"""Study files that come with slamgym; `slamgym study NAME` runs one of them."""

@@ -1,0 +1,1 @@
+"""Causes proved: a lost drive repeated with one thing changed at a time."""
