@@ -4,10 +4,10 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow test-faults test-fuzz test-seeds check bench format setup clean system-libraries furniture
+.PHONY: demo test test-slow test-faults test-fuzz test-seeds check bench format setup clean system-libraries furniture browser
 
 demo: setup
-	$(BIN)/python examples/speed_sweep.py
+	$(BIN)/slamgym study quick --out out/quick
 
 test: setup
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
@@ -44,6 +44,9 @@ system-libraries:
 
 furniture:
 	@sh .ci/system_libraries.sh $(PYTHON) sweethome3d-furniture
+
+browser:
+	@sh .ci/system_libraries.sh $(PYTHON) chromium
 
 $(STAMP): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from math import ceil
 from typing import cast
@@ -29,6 +30,8 @@ JOINT_TRIMS_M = (0.2, 0.5, 0.8)
 MIN_LEG_M = 0.3
 ROUND_TRIP_ATTEMPTS = 16
 ROUND_TRIP_EXCESS = 1.03
+LAP_AGAIN_M = 3.0
+"""So far a lap goes on beyond its start: enough for ORB-SLAM3 to see it again, from the same side, and close the loop."""
 
 
 def plan_path(
@@ -38,7 +41,8 @@ def plan_path(
 
     free: where the robot's centre may be, from `free_space`; the path stays within half a cell of it.
     tour: "one_way" is exactly `path_length_m` long; "round_trip" ends where it starts and is at least
-    that long, mostly a few percent more and at times up to twice that.
+    that long, mostly a few percent more and at times up to twice that; "lap" is a round trip that then takes its first
+    3 m once more, these included in its length.
 
     Legs lead to goals at least 2.5 m away where the house has them, keep away from obstacles, and are joined by curves;
     where there is no room for a curve the path turns on the spot. Its `goals_m` tell where one leg ends and the next
@@ -113,18 +117,18 @@ def _one_way(roads: _Roads, length_m: float, rng: np.random.Generator) -> Path:
     raise _no_path(length_m)
 
 
-def _round_trip(roads: _Roads, length_m: float, rng: np.random.Generator) -> Path:
-    """A path through random goals and back, `length_m` long or little more."""
+def _round_trip(roads: _Roads, length_m: float, rng: np.random.Generator, again_m: float = 0.0) -> Path:
+    """A path through random goals and back, then its first `again_m` once more, `length_m` long or little more."""
     home = int(rng.integers(len(roads.goals)))
     target_m, found = length_m, []
     for _ in range(ROUND_TRIP_ATTEMPTS):
-        path = _finish(_loop(roads, home, target_m, rng), roads)
+        path = _finish(_on_again(_loop(roads, home, target_m - again_m, rng), again_m, roads), roads)
         if path.length_m >= length_m:
             found.append(path)
         if length_m <= path.length_m <= length_m * ROUND_TRIP_EXCESS:
             break
         # Joints and smoothing change the length.
-        target_m = max(target_m + length_m - path.length_m, length_m / 2)
+        target_m = max(target_m + length_m - path.length_m, again_m + (length_m - again_m) / 2)
     if not found:
         raise _no_path(length_m)
     return min(found, key=lambda path: path.length_m)
@@ -146,6 +150,11 @@ def _loop(roads: _Roads, home: int, length_m: float, rng: np.random.Generator) -
         way, here = _join(way, roads.route(here, goal), roads), goal
         driven_m = way.length_m
     raise _no_path(length_m)
+
+
+def _on_again(way: _Way, again_m: float, roads: _Roads) -> _Way:
+    """The way, and then its first metres once more."""
+    return _join(way, way.xy[arc_length(way.xy) <= again_m], roads) if again_m else way
 
 
 def _join(way: _Way | None, leg: FloatArray, roads: _Roads) -> _Way:
@@ -201,4 +210,5 @@ def _no_path(length_m: float) -> SceneError:
 TOURS: dict[str, Callable[[_Roads, float, np.random.Generator], Path]] = {
     "one_way": _one_way,
     "round_trip": _round_trip,
+    "lap": partial(_round_trip, again_m=LAP_AGAIN_M),
 }

@@ -20,7 +20,7 @@ def curvature(path):
     return np.abs(np.diff(heading)) / 0.05
 
 
-@pytest.mark.parametrize("tour", ["one_way", "round_trip"])
+@pytest.mark.parametrize("tour", ["one_way", "round_trip", "lap"])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_robot_fits_everywhere_on_the_path(flat, seed, tour):
     grid, free = flat(seed)
@@ -47,6 +47,17 @@ def test_a_round_trip_ends_where_it_starts_and_is_little_longer_than_asked(flat,
         lengths.append(path.length_m)
     assert min(lengths) >= length_m
     assert np.median(lengths) <= length_m + excess
+
+
+def test_a_lap_takes_its_first_metres_once_more_in_the_same_direction(flat):
+    for seed in SEEDS:
+        path = plan(flat(seed), 14.0, seed, "lap")
+        assert 14.0 <= path.length_m < 20.0
+        # The joint at the start may curve for up to 0.8 m, and the end is smoothed.
+        begin, end = path.between(1.2, 2.5), path.between(path.length_m - 2.2, path.length_m)
+        nearest = np.linalg.norm(begin.xy[:, None] - end.xy[None], axis=2)
+        assert nearest.min(axis=1).max() < 0.1
+        assert (np.diff(nearest.argmin(axis=1)) >= 0).all()
 
 
 def test_paths_bend_smoothly_where_there_is_room(flat):
@@ -89,7 +100,7 @@ def test_where_no_curve_fits_the_path_turns_on_the_spot(corridor):
 def test_a_small_house_has_paths_too():
     free = np.zeros((60, 60), dtype=bool)
     free[20:40, 20:40] = True
-    for tour in ("one_way", "round_trip"):
+    for tour in ("one_way", "round_trip", "lap"):
         assert plan((OccupancyGrid(~free, np.zeros(2), 0.05), free), 5.0, tour=tour).length_m >= 5.0 - 1e-9
 
 
