@@ -73,8 +73,13 @@ class Path:
 
     def cut(self, length_m: float) -> "Path":
         """The first `length_m` metres of the path."""
-        kept = self.xy[self.arc_m < length_m - 1e-9]
-        return Path(np.vstack([kept, self.point_at(length_m)]), self.goals_m[self.goals_m < length_m])
+        return self.between(0.0, length_m)
+
+    def between(self, start_m: float, end_m: float) -> "Path":
+        """The metres `start_m` to `end_m` of the path, its goals among them; distances count from 0 at `start_m`."""
+        inner = (self.arc_m > start_m + 1e-9) & (self.arc_m < end_m - 1e-9)
+        goals_m = self.goals_m[(self.goals_m > start_m) & (self.goals_m < end_m)]
+        return Path(np.vstack([self.point_at(start_m), self.xy[inner], self.point_at(end_m)]), goals_m - start_m)
 
 
 def arc_length(xy: FloatArray) -> FloatArray:

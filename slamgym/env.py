@@ -25,6 +25,7 @@ Info = dict[str, Any]
 
 BLUR_SAMPLES = 5
 END_REACHED_M = 0.05
+RESET_OPTIONS = ("tour", "stretch_m")
 
 
 class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
@@ -42,7 +43,9 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
 
     The drive ends within `END_REACHED_M` of the path's end.
 
-    The reset seed picks the path only; `reset(options={"tour": "round_trip"})` plans one that returns to its start.
+    The reset seed picks the path only; `reset(options={"tour": "round_trip"})` plans one that returns to its start, and
+    `{"stretch_m": (a, b)}` takes the metres a to b of the planned one, to its end at most: the robot starts at rest at
+    a, and all that is told of the path, progress and goals too, is told of the stretch, from 0 at a.
     Raises ConfigError for a bad parameter, SceneError and RenderError at the first reset.
     """
 
@@ -72,13 +75,12 @@ class HomeRobotEnv(gym.Env[Observation, NDArray[np.float32]]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, Info]:
         super().reset(seed=seed)
-        tour = _tour(options)
+        tour, stretch_m = _checked_options(options)
         path_seed, noise_seed = self.np_random.integers(2**63, size=2)
         self.stage = stage = load_stage(self.params)
         self.grid = stage.grid
-        self.path: Path = plan_path(
-            stage.grid, stage.free, self.params.path_length_m, np.random.default_rng(path_seed), tour=tour
-        )
+        path = plan_path(stage.grid, stage.free, self.params.path_length_m, np.random.default_rng(path_seed), tour=tour)
+        self.path: Path = path if stretch_m is None else _stretch(path, stretch_m)
         self._noise_rng = np.random.default_rng(noise_seed)
         robot = self._enter(stage)
         x, y = self.path.xy[0]
@@ -204,11 +206,27 @@ class HomeRobotForSlamEnv(HomeRobotEnv):
         return split_params(params)
 
 
-def _tour(options: dict[str, Any] | None) -> str:
-    for key in options or {}:
-        if key != "tour":
-            raise ConfigError(unknown_word("reset option", str(key), ["tour"]))
-    return str((options or {}).get("tour", "one_way"))
+def _checked_options(options: dict[str, Any] | None) -> tuple[str, Any]:
+    """The tour, and the stretch where one is asked for."""
+    options = options or {}
+    for key in options:
+        if key not in RESET_OPTIONS:
+            raise ConfigError(unknown_word("reset option", str(key), RESET_OPTIONS))
+    return str(options.get("tour", "one_way")), options.get("stretch_m")
+
+
+def _stretch(path: Path, stretch_m: Any) -> Path:
+    try:
+        start_m, end_m = (float(metres) for metres in stretch_m)
+    except (TypeError, ValueError):
+        start_m = end_m = np.nan
+    end_m = min(end_m, path.length_m)
+    if not 0.0 <= start_m < end_m - END_REACHED_M:
+        raise ConfigError(
+            f"stretch_m: expected two distances along the path of {path.length_m:.2f} m, the first of at least 0 and "
+            f"the second more than {END_REACHED_M} m beyond it, got {stretch_m!r}"
+        )
+    return path.between(start_m, end_m)
 
 
 def _checked_action(action: NDArray[np.float32]) -> tuple[float, float]:

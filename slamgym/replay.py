@@ -73,6 +73,7 @@ def replay(sequence: Sequence, params: SlamParams, on_frame: Callable[[int], Non
     config = params.config(sequence.camera, sequence.fps)
     recorded = params.recorded(config)  # now: a program may be built anew while it runs
     with params.session(config) as session:
+        session.start()  # it loads while the first frames are read
         run = SlamRun(session)
         record = run_sequence(run, _told(read_ahead(sequence, sequence.rows(params.stride)), on_frame))
         log = session.log()

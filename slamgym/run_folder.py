@@ -12,6 +12,7 @@ slam.log         what the SLAM printed, the last MiB of it
 """
 
 import json
+from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 from typing import Any, Protocol
@@ -53,10 +54,11 @@ class Run(Protocol):
         ...
 
 
-def write_run(run: Run, folder: Path) -> Path:
+def write_run(run: Run, folder: Path, also: Callable[[Path], None] | None = None) -> Path:
     """Write the run folder in one piece and return it; an interrupted episode's gets the suffix ".interrupted".
 
-    Raises OutputError when the folder exists and is not empty or cannot be written. Ctrl-C waits until it is written.
+    also: writes what else belongs into the folder, before that is in its place. Raises OutputError when the folder
+    exists and is not empty or cannot be written. Ctrl-C waits until it is written.
     """
     folder = folder.resolve()
     if run.summary["end"] == "interrupted":
@@ -65,6 +67,8 @@ def write_run(run: Run, folder: Path) -> Path:
     with deferred_interrupt() as interrupted, draft(folder) as place:
         place.mkdir()
         _write_files(run, place)
+        if also is not None:
+            also(place)
     if interrupted():
         raise KeyboardInterrupt
     return folder

@@ -15,7 +15,7 @@ from slamgym.params import SlamInLoopParams
 from slamgym.slam.backend import check_config
 from slamgym.slam.record import SlamRun
 from slamgym.slam.session import SlamSession
-from slamgym.types import Frame, SlamEvent, SlamRecord, Summary, TrackingState
+from slamgym.types import FloatArray, Frame, SlamEvent, SlamRecord, Summary, TrackingState
 
 
 class SlamWrapper(
@@ -110,6 +110,10 @@ class SlamWrapper(
     def slam_timing(self) -> dict[str, float]:
         """See `SlamRun.timing`; not in `info`, which is the same on every computer."""
         return self._run.timing()
+
+    def slam_map_points(self) -> FloatArray | None:
+        """See `SlamSession.map_points`; None before the first reset and after the episode's end."""
+        return self._session.map_points() if self._session is not None and self._record is None else None
 
     @property
     def slam_pid(self) -> int | None:

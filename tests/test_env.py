@@ -226,3 +226,40 @@ def test_noise_and_blur_do_what_they_say():
     assert sharpness(blurred) < 0.9 * sharpness(quiet)
     for env in (quiet, noisy, blurred):
         env.close()
+
+
+def test_a_stretch_of_the_path_is_driven_from_rest(env):
+    _, (whole,) = drive(env, 7, 0)
+    path = env.unwrapped.path
+    _, infos = drive(env, 7, 3, options={"stretch_m": (0.5, 1.4)})
+    stretch = env.unwrapped.path
+    assert (whole["path_length_m"], infos[0]["path_length_m"]) == pytest.approx((2.0, 0.9))
+    assert np.allclose(stretch.xy[[0, -1]], path.point_at([0.5, 1.4]))
+    assert infos[0]["robot"] == pytest.approx([*path.point_at(0.5), path.heading_at(0.5)])
+    assert (infos[0]["progress_m"], infos[0]["speed_mps"], infos[0]["stamp_ns"]) == (0.0, 0.0, 0)
+    assert 0.0 < infos[-1]["progress_m"] < 0.02
+    episode = run_episode(env, OnStretch(), 7)
+    assert (episode.summary["end"], episode.summary["planned_path_m"]) == ("path_driven", pytest.approx(0.9))
+    assert episode.config["run"]["reset_options"] == {"stretch_m": (0.5, 1.4)}
+
+
+class OnStretch(PathFollower):
+    reset_options = {"stretch_m": (0.5, 1.4)}  # noqa: RUF012
+
+
+def test_a_stretch_ends_where_the_path_does(env):
+    env.reset(seed=7, options={"stretch_m": [1.5, 99.0]})
+    assert env.unwrapped.path.length_m == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    "stretch_m", [(-0.1, 1.0), (1.0, 1.0), (1.96, 3.0), (5.0, 6.0), (np.nan, 1.0), 1.0, (1.0,), "ab"]
+)
+def test_what_is_no_stretch_is_refused(env, stretch_m):
+    with pytest.raises(ConfigError, match=r"stretch_m: expected two distances along the path of 2.00 m"):
+        env.reset(seed=7, options={"stretch_m": stretch_m})
+
+
+def test_unknown_reset_options_are_refused(env):
+    with pytest.raises(ConfigError, match="unknown reset option 'strech_m'; did you mean 'stretch_m'"):
+        env.reset(seed=7, options={"strech_m": (0.0, 1.0)})

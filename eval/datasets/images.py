@@ -34,8 +34,11 @@ def read_depth(path: Path, camera: PinholeCamera, depth_scale: float) -> NDArray
 
 
 def png(pixels: NDArray[np.uint8] | NDArray[np.uint16]) -> bytes:
-    """The image, BGR or grey, as PNG, packed in the least time: level 1 of 9, some 5 % larger than the default."""
-    return cv2.imencode(".png", pixels, [cv2.IMWRITE_PNG_COMPRESSION, 1])[1].tobytes()
+    """The image, BGR or grey, as PNG, packed and read in the least time, and some 10 % larger than by default: level 1
+    of 9, each row as its difference from the one above.
+    """
+    options = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_UP]
+    return cv2.imencode(".png", pixels, options)[1].tobytes()
 
 
 def _read(path: Path) -> bytes:

@@ -24,6 +24,8 @@ from slamgym.types import FloatArray
 
 # Least distance of two labels at the curves' ends, in shares of the axis, as long as all have room.
 LABEL_STEP = 0.055
+# Of more values than this every so many make a step: finer ones cannot be seen.
+MAX_STEPS = 1000
 
 
 def plot_cumulative(
@@ -63,6 +65,9 @@ def _share(values: FloatArray) -> float:
 def _draw_curve(axes: Axes, values: FloatArray, scale: ValueScale, style: Look, label: str) -> Line2D:
     errors = np.sort(placed(values[~failed_runs(values)], scale))
     shares = np.arange(len(errors) + 1) / max(len(values), 1)
+    if len(errors) > MAX_STEPS:
+        kept = np.linspace(0, len(errors) - 1, MAX_STEPS).astype(int)
+        errors, shares = errors[kept], np.append(0.0, shares[1:][kept])
     # The curve comes from 0 and stays at its end, up to both sides of the axes.
     x, y = np.concatenate([[scale.low], errors, [scale.high]]), np.append(shares, shares[-1])
     every = max(len(x) // 8, 1)

@@ -78,8 +78,9 @@ def plot_map(
     axes.set_title(_title(summary), loc="left")
     if axes.get_legend_handles_labels()[0]:
         figure.legend(loc="outside right upper", frameon=False)
-    # The first drawing moves the axes to their places beside the legend.
-    figure.draw_without_rendering()
+    # The axes keep their proportions: only a second layout, that of the drawing, finds their place beside the legend.
+    if (layout := figure.get_layout_engine()) is not None:
+        layout.execute(figure)
     figure.savefig(png, format="png")
 
 

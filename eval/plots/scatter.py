@@ -38,11 +38,14 @@ def plot_scatter(
     quantity: str = "ATE RMSE (m)",
     correlations: Mapping[str, RankCorrelation] | None = None,
     log_y: bool = True,
+    counted: str = "runs",
+    can_fail: bool = True,
 ) -> Figure:
     """A panel for each attribute (R,), named with its unit, against the metric's values (R,) of the same runs.
 
     A failed run is NaN or infinite. Runs whose attribute is not finite have no place and are counted in the panel's
-    title, which also takes the attribute's correlation where there is one. Raises ConfigError.
+    title, which also takes the attribute's correlation where there is one. counted: what the points are, for example
+    "paths". can_fail: False for a metric that every run has, such as its completion. Raises ConfigError.
     """
     columns, metric = as_runs(attributes), np.asarray(values, dtype=np.float64)
     for name, column in columns.items():
@@ -56,20 +59,22 @@ def plot_scatter(
     figure = new_figure(max(4.2 * n_cols, 6.0), 3.9 * n_rows + 0.4)
     panels = figure.subplots(n_rows, n_cols, squeeze=False, sharey=True)
     for axes, label, (name, column) in zip(panels.flat, plain_names(columns, 44), columns.items(), strict=False):
-        _draw_panel(axes, column, metric, scale)
+        _draw_panel(axes, column, metric, scale, can_fail)
         axes.set_xlabel(label)
         axes.set_title(_title(column, (correlations or {}).get(name)), loc="left", fontsize=9)
     for axes in panels.flat[len(columns) :]:
         axes.set_axis_off()
     for axes in panels[:, 0]:
-        set_value_axis(axes, "y", scale, quantity, failed=True)
-    figure.suptitle(failed_of(metric), x=0.01, ha="left", fontsize=11)
+        set_value_axis(axes, "y", scale, quantity, failed=can_fail)
+    heading = failed_of(metric, counted) if can_fail else f"{len(metric)} {counted}"
+    figure.suptitle(heading, x=0.01, ha="left", fontsize=11)
     return figure
 
 
-def _draw_panel(axes: Axes, column: FloatArray, metric: FloatArray, scale: ValueScale) -> None:
+def _draw_panel(axes: Axes, column: FloatArray, metric: FloatArray, scale: ValueScale, can_fail: bool) -> None:
     known = np.isfinite(column)
-    draw_failed_band(axes, scale)
+    if can_fail:
+        draw_failed_band(axes, scale)
     tidy(axes)
     draw_runs(axes, column[known], metric[known], scale)
 

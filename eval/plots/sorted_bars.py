@@ -1,6 +1,7 @@
 """Every run as one bar, sorted: the good ones, the bad ones, the failed ones, and the gap between them."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -24,6 +25,7 @@ from slamgym.types import FloatArray
 
 # More names than this side by side cannot be read, and are left out.
 MAX_NAMES = 60
+MAX_BARS = 400
 
 
 def plot_sorted_bars(
@@ -34,13 +36,16 @@ def plot_sorted_bars(
     threshold: float = np.nan,
     gap: tuple[float, float] = (np.nan, np.nan),
     failed_when: str = "",
+    counted: str = "runs",
+    failed: str = "failed",
 ) -> Figure:
     """A panel for each system: its values (R,), sorted, on a logarithmic axis that all panels share.
 
     A failed run is NaN or infinite: a hatched bar at the right, up to the top, and counted in the panel's title.
     names: what the R runs are, the same for all systems. threshold: separates good runs from failed ones, in the
     values' unit; gap: the values below and above it, between which the panel is shaded; NaN for none. failed_when: what
-    failed means, said above the panels. Raises ConfigError.
+    failed means, said above the panels. counted: what the values are of, for example "paths"; failed: the
+    word for those that failed. Raises ConfigError.
     """
     runs = as_runs(values)
     _check_names(runs, names)
@@ -53,8 +58,8 @@ def plot_sorted_bars(
         set_value_axis(axes, "y", scale, quantity, failed=True)
         handles = _draw_threshold(axes, threshold, gap)
         _draw_bars(axes, numbers, scale, look(i).colour)
-        _label_bars(axes, numbers, labels)
-        axes.set_title(f"{title}: {failed_of(numbers)}", loc="left")
+        _label_bars(axes, numbers, labels, counted)
+        axes.set_title(f"{title}: {failed_of(numbers, counted, failed)}", loc="left")
     if failed_when:
         figure.suptitle(f"failed: {failed_when}", x=0.01, ha="left", fontsize=9)
     legend_below(figure, handles)
@@ -88,21 +93,31 @@ def _draw_threshold(axes: Axes, threshold: float, gap: tuple[float, float]) -> l
 
 def _draw_bars(axes: Axes, values: FloatArray, scale: ValueScale, colour: str) -> None:
     heights = np.sort(placed(values, scale))
-    good = len(values) - np.count_nonzero(failed_runs(values))
-    axes.bar(np.arange(good), heights[:good] - scale.low, bottom=scale.low, color=colour, width=0.8)
-    failed = np.arange(good, len(values))
-    axes.bar(
-        failed, scale.top - scale.low, bottom=scale.low, width=0.8, facecolor="white", edgecolor=LOST, hatch="/////"
-    )
+    good = len(values) - int(np.count_nonzero(failed_runs(values)))
+    draw = _draw_each if len(values) <= MAX_BARS else _draw_outline
+    draw(axes, 0, heights[:good], scale, {"color": colour})
+    at_top = np.full(len(values) - good, scale.top)
+    draw(axes, good, at_top, scale, {"facecolor": "white", "edgecolor": LOST, "hatch": "/////"})
     axes.set_ylim(scale.low, scale.top)
     axes.set_xlim(-0.8, max(len(values), 1) - 0.2)
     tidy(axes, grid=False)
 
 
-def _label_bars(axes: Axes, values: FloatArray, labels: Sequence[str]) -> None:
+def _draw_each(axes: Axes, first: int, heights: FloatArray, scale: ValueScale, style: Mapping[str, Any]) -> None:
+    axes.bar(first + np.arange(len(heights)), heights - scale.low, bottom=scale.low, width=0.8, **style)
+
+
+def _draw_outline(axes: Axes, first: int, heights: FloatArray, scale: ValueScale, style: Mapping[str, Any]) -> None:
+    """One area in place of bars that are narrower than a pixel, of as many heights as can be seen."""
+    if len(heights):
+        shown = np.linspace(0, len(heights) - 1, min(len(heights), MAX_BARS)).astype(int)
+        axes.fill_between(first + shown, scale.low, heights[shown], **style)
+
+
+def _label_bars(axes: Axes, values: FloatArray, labels: Sequence[str], counted: str) -> None:
     if labels:
         order = np.argsort(np.where(failed_runs(values), np.inf, values), kind="stable")
         axes.set_xticks(np.arange(len(labels)), [labels[k] for k in order], rotation=90, fontsize=7)
     else:
         axes.set_xticks([])
-        axes.set_xlabel(f"{len(values)} runs, sorted")
+        axes.set_xlabel(f"{len(values)} {counted}, sorted")

@@ -15,6 +15,8 @@ from slamgym.types import BoolArray, FloatArray
 
 # Where all values are alike the axis still shows this many decades, so that noise does not look like a difference.
 MIN_DECADES = 0.6
+# More points than this are an image inside of an svg, which would be too large for a browser.
+MAX_VECTOR_POINTS = 2000
 
 
 class ValueScale(NamedTuple):
@@ -90,11 +92,15 @@ def draw_failed_band(axes: Axes, scale: ValueScale) -> None:
 def draw_runs(axes: Axes, x: FloatArray, values: FloatArray, scale: ValueScale) -> None:
     """Runs as points at x (R,), failed ones as crosses in their band."""
     y, failed = placed(values, scale), failed_runs(values)
+    as_image = len(values) > MAX_VECTOR_POINTS
     axes.plot(
         x[~failed], y[~failed], linestyle="none", marker="o", markersize=4.5, color=COLOURS[0], markeredgecolor="white",
-        markeredgewidth=0.5, zorder=3,
+        markeredgewidth=0.5, zorder=3, rasterized=as_image,
     )  # fmt: skip
-    axes.plot(x[failed], y[failed], linestyle="none", marker="x", markersize=6, color=LOST, mew=1.5, zorder=3)
+    axes.plot(
+        x[failed], y[failed], linestyle="none", marker="x", markersize=6, color=LOST, mew=1.5, zorder=3,
+        rasterized=as_image,
+    )  # fmt: skip
 
 
 def _ticks(scale: ValueScale) -> list[float]:

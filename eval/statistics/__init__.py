@@ -3,6 +3,7 @@
 Not imported by the rest of the package, since statsmodels takes a second to import.
 """
 
+from slamgym.eval.statistics.clustered import clustered_difference, clustered_share
 from slamgym.eval.statistics.correlation import correlations
 from slamgym.eval.statistics.failure_curve import FailureCurve, failure_curve
 from slamgym.eval.statistics.failure_threshold import FailureThreshold, failure_threshold
@@ -16,6 +17,8 @@ __all__ = [
     "Interval",
     "PairedComparison",
     "bootstrap_interval",
+    "clustered_difference",
+    "clustered_share",
     "compare_pairs",
     "correlations",
     "failure_curve",

@@ -12,6 +12,7 @@ from slamgym import MAX_EPISODE_STEPS
 from slamgym.agents import AGENTS, Agent
 from slamgym.cli.options import option_group
 from slamgym.cli.terminal import light_progress, progress_bar
+from slamgym.env import HomeRobotEnv
 from slamgym.errors import ConfigError, unknown_word
 from slamgym.files import check_free
 from slamgym.params import DriveParams
@@ -21,6 +22,7 @@ from slamgym.stage import load_stage
 DriveOptions = option_group(DriveParams)
 
 OnStep = Callable[[float, float], None]
+Drive = Callable[[RobotEnv, Agent, OnStep], Episode]
 
 
 @dataclass(kw_only=True)
@@ -36,25 +38,11 @@ class DriveCommand:
         MAX_EPISODE_STEPS
     )
 
-    def driven(
-        self, env_id: str, keywords: Mapping[str, Any], run: Callable[[RobotEnv, Agent, OnStep], Episode]
-    ) -> Episode:
+    def driven(self, env_id: str, keywords: Mapping[str, Any], run: Drive) -> Episode:
         """The episode that `run` makes of the environment, with a progress bar."""
         self._check()
-        env = gym.make(env_id, max_episode_steps=self.max_episode_steps, **vars(self.drive), **keywords)
-        check_free(self.out, "folder")
-        try:
-            with progress_bar("{task.completed:.1f} m") as progress:
-                task = progress.add_task("loading", total=None)
-                # Kept in memory: the reset finds it there.
-                load_stage(DriveParams.checked(vars(self.drive)), light_progress(progress, task))
-                return run(
-                    env,
-                    AGENTS[self.agent](),
-                    lambda done_m, path_m: progress.update(task, description="driving", completed=done_m, total=path_m),
-                )
-        finally:
-            env.close()
+        keywords = {"max_episode_steps": self.max_episode_steps, **vars(self.drive), **keywords}
+        return driven(env_id, keywords, AGENTS[self.agent], self.out, run)
 
     def _check(self) -> None:
         if self.agent not in AGENTS:
@@ -64,3 +52,23 @@ class DriveCommand:
                 f"expected a seed of at least 0 and max_episode_steps of at least 1, got {self.seed} and "
                 f"{self.max_episode_steps}"
             )
+
+
+def driven(env_id: str, keywords: Mapping[str, Any], agent: type[Agent], out: Path, run: Drive) -> Episode:
+    """The episode that `run` makes of the environment of these keywords, for the folder `out`, with a progress bar."""
+    env = gym.make(env_id, **keywords)
+    robot = env.unwrapped
+    assert isinstance(robot, HomeRobotEnv)
+    check_free(out, "folder")
+    try:
+        with progress_bar("{task.completed:.1f} m") as progress:
+            task = progress.add_task("loading", total=None)
+            # Kept in memory: the reset finds it there.
+            load_stage(robot.params, light_progress(progress, task))
+            return run(
+                env,
+                agent(),
+                lambda done_m, path_m: progress.update(task, description="driving", completed=done_m, total=path_m),
+            )
+    finally:
+        env.close()

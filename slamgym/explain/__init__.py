@@ -1,1 +1,1 @@
-"""Causes proved: a lost drive repeated with one thing changed at a time."""
+"""Why was it lost? The drive around each loss again, with one thing changed at a time."""

@@ -42,6 +42,14 @@ def checked_trajectory(answer: Any) -> SlamTrajectory:
     )
 
 
+def checked_points(answer: Any) -> FloatArray:
+    """Points of the map (N, 3), those that are not finite left out; raises ValueError."""
+    points = np.asarray(answer, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ValueError(f"expected the points of the map as an array (N, 3), got shape {points.shape}")
+    return points[np.isfinite(points).all(axis=1)]
+
+
 def _integers(name: str, values: Any) -> IntArray:
     array = np.asarray(values)
     if array.ndim != 1 or (len(array) and not np.issubdtype(array.dtype, np.integer)):

@@ -38,6 +38,9 @@ class Backend(Protocol):
 
     A backend's module must import without its SLAM library: `Options`, `loop_closures`, `has_background_threads`,
     `offline`, `check` and `versions` are used in the user's process, the rest in the worker's.
+
+    A method `map_points()`, where it has one, answers with the points (N, 3) of the map that the last frame was tracked
+    by, metres in that map's frame. It is asked only by who shows a run while it goes on, and changes no result.
     """
 
     Options: ClassVar[type[SlamOptions]]

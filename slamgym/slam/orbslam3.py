@@ -59,6 +59,9 @@ class OrbSlam3:
         self._online.append((frame.stamp_ns, T_map_cam, self._maps.map_id))
         return TrackResult(state, T_map_cam, self._maps.map_id, answer.num_tracked_points, event)
 
+    def map_points(self) -> FloatArray:
+        return np.asarray(self._slam.tracked_map_points(), dtype=np.float64)
+
     def finish(self) -> SlamTrajectory:
         self._slam.shutdown()
         if all(map_id in self._maps.thrown_away for *_, map_id in self._online):

@@ -24,7 +24,7 @@ from slamgym.slam.idle import check_lockstep_possible, wait_until_idle
 from slamgym.slam.log_file import LogFile
 from slamgym.slam.process import Outcome, WorkerLostError, WorkerProcess
 from slamgym.slam.scratch import ScratchFolder
-from slamgym.types import Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
+from slamgym.types import FloatArray, Frame, SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
 Sync = Literal["lockstep", "realtime", "free"]
 
@@ -143,6 +143,13 @@ class SlamSession:
             )
             self.lockstep_wait_s += time.monotonic() - begin
         return result
+
+    def map_points(self) -> FloatArray | None:
+        """Points (N, 3) of the map that the last frame was tracked by, metres in that map's frame; after a frame that
+        was not tracked they mean nothing. None when the SLAM is gone, or its backend does not tell them.
+        """
+        moment = f"when asked for its map after frame {len(self.track_s) - 1}"
+        return cast(FloatArray | None, self._ask(self._limits.frame_s, moment, "map_points"))
 
     def finish(self) -> SlamTrajectory:
         """End the run; the poses that the SLAM stands by, none when it is gone.

@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from slamgym.errors import SlamgymError, TrajectoryWarning
-from slamgym.slam.answers import checked_result, checked_trajectory
+from slamgym.slam.answers import checked_points, checked_result, checked_trajectory
 from slamgym.slam.backend import Backend, SlamConfig, load_backend
 from slamgym.slam.frame_buffer import FrameBuffer
 from slamgym.slam.program import adopt_orphans, signal_after
@@ -50,6 +50,11 @@ class Server:
         assert self._backend is not None
         assert self._frames is not None
         return checked_result(self._backend.track(Frame(stamp_ns, *self._frames.read(), T_world_cam)))
+
+    def map_points(self) -> FloatArray | None:
+        """None from a backend that does not tell them."""
+        tell = getattr(self._backend, "map_points", None)
+        return None if tell is None else checked_points(tell())
 
     def finish(self) -> tuple[SlamTrajectory, list[str]]:
         """The final trajectory, and the texts of the TrajectoryWarnings about it, which nobody sees here."""

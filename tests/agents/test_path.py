@@ -63,3 +63,21 @@ def test_cut_is_exact(eight):
         assert cut.length_m == pytest.approx(length_m, abs=1e-9)
         assert np.allclose(cut.xy[-1], eight.point_at(length_m))
         assert np.diff(cut.arc_m).min() > 0
+
+
+def test_a_part_of_a_path_is_that_part():
+    path = Path(resample(EIGHT), np.array([0.5, 2.0, 4.0, 7.0, 9.0]))
+    part = path.between(1.23, 7.0)
+    assert part.length_m == pytest.approx(5.77, abs=1e-9)
+    for s in np.linspace(0.0, 5.77, 40):
+        assert np.allclose(part.point_at(s), path.point_at(1.23 + s), atol=1e-9)
+        assert part.heading_at(s) == pytest.approx(path.heading_at(1.23 + s))
+    assert part.goals_m == pytest.approx([0.77, 2.77])  # the one at its end is none
+    assert np.diff(part.arc_m).min() > 0
+
+
+def test_parts_join_and_the_whole_is_a_part(eight):
+    parts = [eight.between(0.0, 3.3), eight.between(3.3, eight.length_m)]
+    assert np.allclose(np.vstack([parts[0].xy, parts[1].xy[1:]])[[0, -1]], eight.xy[[0, -1]])
+    assert parts[0].length_m + parts[1].length_m == pytest.approx(eight.length_m)
+    assert np.array_equal(eight.between(0.0, eight.length_m).xy, eight.xy)

@@ -4,7 +4,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slamgym.slam.answers import checked_result, checked_trajectory
+from slamgym.slam.answers import checked_points, checked_result, checked_trajectory
 from slamgym.slam.session import SlamSession
 from slamgym.types import SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
@@ -97,3 +97,11 @@ def test_slam_that_calls_nothing_a_pose_is_a_crash(faulty, config, frame, backen
         session.finish()
         assert session.outcome == "crashed"
         assert why in session.failure
+
+
+def test_points_of_the_map_are_finite():
+    points = [[1, 2, 3], [np.nan, 0, 0], [4, 5, 6]]
+    assert checked_points(points).tolist() == [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]
+    assert checked_points(np.empty((0, 3), np.float32)).shape == (0, 3)
+    with pytest.raises(ValueError, match=r"array \(N, 3\), got shape \(3,\)"):
+        checked_points([1, 2, 3])

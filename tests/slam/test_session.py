@@ -45,6 +45,19 @@ def test_healthy_run(faulty, config, frame):
     assert (session.outcome, len(session.track_s)) == ("", 10)
 
 
+def test_map_points_are_those_of_a_backend_that_tells_them(faulty, config, frame):
+    for name in (faulty("Healthy"), "groundtruth"):
+        with SlamSession(name, config) as session:
+            session.track(frame(1))
+            assert session.map_points() is None
+            assert session.outcome == ""
+    with SlamSession(faulty("Segfaults"), config) as session:
+        for number in range(1, 4):
+            session.track(frame(number))
+        assert session.outcome == "crashed"
+        assert session.map_points() is None
+
+
 def test_groundtruth_is_relative_to_the_first_frame(config, frame):
     with SlamSession("groundtruth", config) as session:
         results = [session.track(frame(k)) for k in (5, 6, 8)]

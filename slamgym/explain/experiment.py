@@ -1,0 +1,127 @@
+"""The experiment on one loss: controls, changes one at a time, repeats, in turn.
+
+First it is seen whether the loss comes again at all: most of some repeats of the unchanged stretch must lose it, else
+of the whole drive up to it. These repeats count no more afterwards, since they were picked for their outcome; but where
+some of them did not lose it, twice as many follow as were asked for.
+
+Then come three controls and all changes, a repeat of each in turn, so that what else the computer does meets all alike.
+Two controls are the same frames again. The third starts 0.1 m elsewhere, and so its frames are taken elsewhere: a loss
+that hangs on just where they are taken is a matter of chance, and no change can be given the credit for its absence.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from slamgym.explain.cases import Case, Metres
+from slamgym.explain.changes import Setup, changes_of
+from slamgym.explain.result import CaseResult
+from slamgym.explain.stretch import Stretches, Variant, check_house, is_lost, run_slam, why_not_comparable
+from slamgym.explain.verdict import Count, judge
+from slamgym.run_folder import write_run
+
+UNCHANGED, AGAIN, ELSEWHERE = "unchanged", "unchanged again", "another start"
+START_MOVED_M = 0.1
+
+OnStep = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Bench:
+    """How the repeats of one case are carried out. folder: gets a run folder CHANGE/N for each of them. on_step: called
+    with what is done, for each drive and each SLAM run.
+    """
+
+    case: Case
+    stretches: Stretches
+    folder: Path
+    repeats: int
+    workers: int
+    on_step: OnStep
+
+    def count(self, variants: Mapping[str, Variant]) -> dict[str, Count]:
+        """In how many repeats of each variant it was lost: all drives first, then the SLAM runs in turn."""
+        for variant in variants.values():
+            self.stretches.drive(variant)
+        lost = dict.fromkeys(variants, 0)
+        for name, occurred in self._outcomes(variants):
+            lost[name] += occurred
+        return {name: Count(count, self.repeats) for name, count in lost.items()}
+
+    def _outcomes(self, variants: Mapping[str, Variant]) -> Iterator[tuple[str, bool]]:
+        with ThreadPoolExecutor(self.workers) as pool:
+            runs = {
+                pool.submit(run_slam, self.stretches.drive(variant), variant.setup): (name, repeat)
+                for repeat in range(1, self.repeats + 1)
+                for name, variant in variants.items()
+            }
+            try:
+                for run in as_completed(runs):
+                    name, repeat = runs[run]
+                    self.on_step(f"{name}, repeat {repeat}")
+                    write_run(run.result(), self.folder / folder_name(name) / str(repeat))
+                    yield name, is_lost(run.result(), variants[name].stretch_m[0], self.case.window_m)
+            finally:
+                pool.shutdown(wait=False, cancel_futures=True)
+
+
+def folder_name(variant: str) -> str:
+    return variant.replace(" ", "_")
+
+
+def run_case(case: Case, folder: Path, repeats: int, workers: int, on_step: OnStep) -> CaseResult:
+    """Carry the experiment out. folder: gets the run folders, and the frames as long as it lasts.
+
+    Raises ConfigError, SceneError, RenderError and SlamError where the drive or the SLAM cannot be repeated here,
+    OutputError where nothing can be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(prefix=".frames-", dir=folder) as frames:
+        bench = Bench(case, Stretches(case.run, Path(frames), on_step), folder, repeats, workers, on_step)
+        seen: dict[Metres, Count] = {}
+        for stretch_m in dict.fromkeys((case.stretch_m, case.whole_m)):
+            seen[stretch_m] = _first_look(bench, stretch_m)
+            if 2 * seen[stretch_m].lost > repeats:
+                always = seen[stretch_m].lost == repeats
+                return _compared(replace(bench, repeats=repeats if always else 2 * repeats), stretch_m, seen)
+    return CaseResult(case, tuple(seen.items()))
+
+
+def _first_look(bench: Bench, stretch_m: Metres) -> Count:
+    unchanged = Variant(bench.case.run.setup, stretch_m)
+    check_house(bench.case.run, bench.stretches.drive(unchanged))
+    name = "first look" if stretch_m == bench.case.stretch_m else "first look at the whole drive"
+    return bench.count({name: unchanged})[name]
+
+
+def _compared(bench: Bench, stretch_m: Metres, seen: Mapping[Metres, Count]) -> CaseResult:
+    setup = bench.case.run.setup
+    controls = {name: Variant(setup, begin) for name, begin in _starts(stretch_m).items()}
+    changes, left_out = _comparable(bench, changes_of(setup), stretch_m)
+    counts = bench.count({**controls, **changes})
+    judgement = judge({name: counts[name] for name in controls}, {name: counts[name] for name in changes})
+    return CaseResult(bench.case, tuple(seen.items()), judgement, left_out)
+
+
+def _starts(stretch_m: Metres) -> dict[str, Metres]:
+    """The stretches of the controls; where there is nothing before, the third starts later."""
+    begin_m, end_m = stretch_m
+    moved_m = begin_m - START_MOVED_M if begin_m >= START_MOVED_M else begin_m + START_MOVED_M
+    return {UNCHANGED: stretch_m, AGAIN: stretch_m, ELSEWHERE: (moved_m, end_m)}
+
+
+def _comparable(
+    bench: Bench, setups: Mapping[str, Setup], stretch_m: Metres
+) -> tuple[dict[str, Variant], dict[str, str]]:
+    """The changes that are tried, and why others are not."""
+    unchanged = bench.stretches.drive(Variant(bench.case.run.setup, stretch_m))
+    changes, left_out = {}, {}
+    for name, setup in setups.items():
+        variant = Variant(setup, stretch_m)
+        if why := why_not_comparable(unchanged, bench.stretches.drive(variant)):
+            left_out[name] = why
+        else:
+            changes[name] = variant
+    return changes, left_out

@@ -1,0 +1,150 @@
+"""Failures of two levels on the same paths, and the curve of failures over a factor, as a report tells them."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from slamgym.eval.statistics import FailureCurve, Interval, bootstrap_interval, clustered_difference, failure_curve
+from slamgym.report.judged import JudgedRuns
+from slamgym.report.levels import Factor
+
+FEWEST_PATHS = 6
+"""Fewer paths tell nothing that holds for others."""
+MOST_CURVE_RUNS = 6000
+"""Of more runs a curve is fitted to so many, of paths drawn at random: no person sees the difference."""
+_MOST_BOOTSTRAP = 2000
+_NOTHING = Interval(np.nan, np.nan, np.nan)
+
+
+@dataclass(frozen=True, slots=True)
+class LevelComparison:
+    """A level of a factor against the one it is compared with (`base`), on the same paths and at the same levels of all
+    other factors; what has no partner is left out.
+
+    runs, failed: of the level; base_runs, base_failed: of the base. pairs: of conditions, over `paths` paths.
+    difference: share of failed runs of the level minus that of the base. ratio: ATE of the level over that of the base,
+    geometric mean over `both_paths` paths where both succeeded. corrected_for: number of comparisons within the factor
+    that the intervals hold for together (Bonferroni).
+    """
+
+    factor: Factor
+    base: str
+    level: str
+    paths: int
+    pairs: int
+    runs: int
+    failed: int
+    base_runs: int
+    base_failed: int
+    difference: Interval
+    ratio: Interval
+    both_paths: int
+    corrected_for: int
+
+    @property
+    def differs(self) -> bool:
+        """Whether the interval of the difference in failures holds no 0."""
+        return bool(self.difference.low > 0 or self.difference.high < 0)
+
+    @property
+    def ratio_differs(self) -> bool:
+        return bool(self.both_paths >= FEWEST_PATHS and (self.ratio.low > 1 or self.ratio.high < 1))
+
+
+def compare_levels(judged: JudgedRuns, factor: Factor) -> list[LevelComparison]:
+    """Each of the `shown` levels against the first one."""
+    others = ["place", *(column for column in judged.columns if column != factor.column)]
+    base, *rest = factor.shown
+    cells = judged.cells.set_index(others)
+    by_level = {level: cells[cells[factor.column] == level] for level in factor.shown}
+    compared = [_compare(factor, base, level, by_level[base], by_level[level], len(rest)) for level in rest]
+    return [comparison for comparison in compared if comparison is not None]
+
+
+def _compare(
+    factor: Factor, base: str, level: str, at_base: pd.DataFrame, at_level: pd.DataFrame, tests: int
+) -> LevelComparison | None:
+    pairs = at_base.merge(at_level, left_index=True, right_index=True, suffixes=("_base", ""))
+    if not len(pairs):
+        return None
+    place = pairs.index.get_level_values("place")
+    confidence = 1 - 0.05 / tests
+    ratio, both_paths = _ratio(pairs, place, confidence)
+    return LevelComparison(
+        factor, base, level,
+        paths=place.nunique(),
+        pairs=len(pairs),
+        runs=int(pairs["runs"].sum()),
+        failed=int(pairs["failures"].sum()),
+        base_runs=int(pairs["runs_base"].sum()),
+        base_failed=int(pairs["failures_base"].sum()),
+        difference=clustered_difference(pairs["share"] - pairs["share_base"], place, confidence),
+        ratio=ratio,
+        both_paths=both_paths,
+        corrected_for=tests,
+    )  # fmt: skip
+
+
+def _ratio(pairs: pd.DataFrame, place: "pd.Index[str]", confidence: float) -> tuple[Interval, int]:
+    """The geometric mean over the paths of the ratio of the errors, where both are numbers, and how many paths."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logs = pd.Series(np.log(pairs["error_m"].to_numpy() / pairs["error_m_base"].to_numpy()), index=place)
+    by_path = logs[np.isfinite(logs)].groupby(level=0).mean().to_numpy()
+    if not len(by_path):
+        return _NOTHING, 0
+    # More paths than that do not change the interval so that a person would see it.
+    chosen = by_path if len(by_path) <= _MOST_BOOTSTRAP else _drawn(by_path, _MOST_BOOTSTRAP)
+    return bootstrap_interval(chosen, "mean", confidence).exp(), len(by_path)
+
+
+@dataclass(frozen=True, slots=True)
+class Trend:
+    """How failures go with a numeric factor. share_low, share_high: shares of failed runs at its ends."""
+
+    factor: Factor
+    curve: FailureCurve
+    rising: bool
+    paths: int
+    share_low: float
+    share_high: float
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether the data refuse that failures do not change with the factor."""
+        middle = self.curve.midpoint
+        return bool(self.paths >= FEWEST_PATHS and middle.is_bounded and np.isfinite(middle.estimate))
+
+    @property
+    def midpoint_is_inside(self) -> bool:
+        """Whether half of the runs fail at a level that was tried, and not beyond."""
+        return bool(self.factor.values[0] <= self.curve.midpoint.estimate <= self.factor.values[-1])
+
+
+def failure_trend(judged: JudgedRuns, factor: Factor, table: pd.DataFrame | None = None) -> Trend:
+    """The curve over a numeric factor, of all runs at all levels of the others, or of the rows in `table`.
+
+    Failures are taken to rise with the factor, or to fall where the runs do so.
+    """
+    rows = _some_paths(judged.table if table is None else table)
+    x, failed = factor.values[rows[factor.column].cat.codes], rows["failed"].to_numpy(np.bool_)
+    rising = bool(np.sum((x - x.mean()) * failed) >= 0)
+    shares = [float(failed[x == end].mean()) for end in (x.min(), x.max())]
+    curve = failure_curve(x, failed, groups=rows["place"].to_numpy(str), rising=rising)
+    return Trend(factor, curve, rising, rows["place"].nunique(), *shares)
+
+
+def _some_paths(table: pd.DataFrame) -> pd.DataFrame:
+    """The table, or about MOST_CURVE_RUNS of its runs: of paths drawn at random, but of FEWEST_PATHS or more."""
+    share = MOST_CURVE_RUNS / max(len(table), 1)
+    if share >= 1:
+        return table
+    places = table["place"].unique()
+    kept = table[table["place"].isin(_drawn(places, max(round(share * len(places)), FEWEST_PATHS)))]
+    return kept.iloc[np.sort(_drawn(np.arange(len(kept)), 2 * MOST_CURVE_RUNS))]
+
+
+def _drawn(values: NDArray[Any], n: int) -> NDArray[Any]:
+    return np.random.default_rng(0).choice(values, min(n, len(values)), replace=False)

@@ -1,0 +1,71 @@
+import json
+import shutil
+
+import pytest
+import yaml
+
+from slamgym.agents import Cautious, LookAround, PathFollower
+from slamgym.errors import ConfigError
+from slamgym.explain.source import read_run, runs_in
+from tests.explain.conftest import drive
+
+
+def test_what_a_run_folder_tells(dizzy_run):
+    run = read_run(dizzy_run)
+    assert (run.seed, run.agent, run.reset_options) == (0, PathFollower, {"tour": "one_way"})
+    assert (run.setup.drive.scene, run.setup.drive.speed, run.setup.drive.turn_rate) == ("hall", 1.0, 2.0)
+    assert (run.setup.drive.camera.width, run.setup.slam.slam) == (320, "picky_backends:Dizzy")
+    assert run.setup.busy_processes == 0
+    assert run.stretch_m == pytest.approx((0.0, 6.0))
+    assert len(run.house_sha256) == 12
+    told = json.loads((dizzy_run / "episode.json").read_text())["losses"]
+    assert [loss.start_s for loss in run.losses] == [loss["start_s"] for loss in told]
+    assert [loss.number for loss in run.losses] == list(range(1, len(told) + 1))
+    # At its top speed of 1 m/s, 0.07 m a frame.
+    assert all(0.0 < loss.progress_m <= loss.start_s for loss in run.losses)
+
+
+def test_a_run_over_a_part_of_a_path_counts_from_the_paths_start(hall, tmp_path):
+    class Part(LookAround):
+        reset_options = {"tour": "one_way", "stretch_m": (1.0, 3.0)}  # noqa: RUF012
+
+    folder = drive("picky_backends:Dizzy", 0, tmp_path / "run", Part())
+    config = yaml.safe_load((folder / "config.yaml").read_text())
+    config["run"]["agent"] = "slamgym.agents.look_around:LookAround"
+    (folder / "config.yaml").write_text(yaml.safe_dump(config))
+    run = read_run(folder)
+    assert (run.agent, run.reset_options) == (LookAround, {"tour": "one_way"})
+    assert run.stretch_m == pytest.approx((1.0, 3.0))
+
+
+def changed_copy(folder, target, **run):
+    shutil.copytree(folder, target)
+    config = yaml.safe_load((target / "config.yaml").read_text())
+    config["run"] |= run
+    (target / "config.yaml").write_text(yaml.safe_dump(config))
+    return target
+
+
+@pytest.mark.parametrize(
+    ("run", "message"),
+    [
+        ({"sequence": "fr1_xyz"}, "over a recorded sequence, where nothing can be changed"),
+        ({"agent": f"{Cautious.__module__}:Cautious"}, "agent of follower, .*patrol, .* got .*Cautious"),
+        ({"reset_options": 3}, "expected the folder of a run, got TypeError"),
+    ],
+)
+def test_runs_that_cannot_be_driven_again(run, message, dizzy_run, tmp_path):
+    with pytest.raises(ConfigError, match=message) as refused:
+        read_run(changed_copy(dizzy_run, tmp_path / "run", **run))
+    assert len(str(refused.value).splitlines()) == 1
+
+
+def test_what_is_no_run_is_refused(tmp_path):
+    with pytest.raises(ConfigError, match="expected the folder of a run or of a study, got neither"):
+        runs_in(tmp_path)
+    with pytest.raises(ConfigError, match=r"expected the folder of a run, got FileNotFoundError"):
+        read_run(tmp_path)
+
+
+def test_a_run_is_itself(dizzy_run):
+    assert runs_in(dizzy_run) == [dizzy_run]
