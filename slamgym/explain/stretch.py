@@ -107,9 +107,11 @@ def run_slam(stretch: DrivenStretch, setup: Setup) -> Episode:
 
 
 def is_lost(episode: Episode, begin_m: float, window_m: Metres) -> bool:
-    """Whether a frame fed in the window was not tracked, or none was fed at all; begin_m: where on the planned path the
-    stretch begins.
+    """Whether a frame fed in the window was not tracked, those before the first initialisation left out, or none was
+    tracked at all; begin_m: where on the planned path the stretch begins.
     """
     frames = frames_table(episode)
-    fed = frames[frames["slam_state"].notna() & (begin_m + frames["progress_m"]).between(*window_m)]
-    return fed.empty or bool((fed["slam_state"] != "ok").any())
+    fed = frames[frames["slam_state"].notna()]
+    tracked = fed["slam_state"] == "ok"
+    within = (begin_m + fed["progress_m"]).between(*window_m)
+    return not tracked[within].any() or bool((within & tracked.cummax() & ~tracked).any())

@@ -203,8 +203,9 @@ def _resolved(file: YamlFile) -> StudySpec:
 def _with_dotted_lines(file: YamlFile) -> YamlFile:
     """The file with lines for the dotted names of what it fixes by mappings of options."""
     fixed = file.data.get("fixed")
-    for name in fixed if isinstance(fixed, dict) else ():
-        if name.partition(".")[0] in fixed.keys() - {name}:
+    names = fixed.keys() if isinstance(fixed, dict) else set[str]()
+    for name in names:
+        if name.partition(".")[0] in names - {name}:
             raise file.error(f"expected every name once, got {name!r} twice in fixed", "fixed", name)
     dotted: dict[Place, int] = {
         ("fixed", ".".join(map(str, place[1:]))): line for place, line in file.lines.items() if place[0] == "fixed"

@@ -65,3 +65,16 @@ class Dies(Picky):
         if len(self.poses) == 4:
             os._exit(1)
         return False
+
+
+class Late(Picky):
+    """Needs a frame to begin with."""
+
+    def track(self, frame):
+        if self.before is None:
+            self.before = frame.rgb
+            return untracked(TrackingState.NOT_INITIALIZED)
+        return super().track(frame)
+
+    def cannot_bear(self, grey):
+        return False

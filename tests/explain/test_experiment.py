@@ -106,16 +106,23 @@ def test_what_cannot_be_compared_is_told(dizzy_run, tmp_path):
     assert why_not_comparable(unchanged, other) == "it changes the path"
 
 
-def test_a_slam_that_dies_has_lost_what_is_left(dizzy_run, tmp_path):
+def test_what_counts_as_lost(dizzy_run, tmp_path):
     run = read_run(dizzy_run)
     stretch = Stretches(run, tmp_path, lambda _: None).drive(Variant(run.setup, (1.0, 1.7)))
-    stamps_m = 1.0 + np.array(stretch.episode.motion()["progress_m"])
-    dead, blind = (run_slam(stretch, run.setup.with_slam(slam=slam)) for slam in ("picky_backends:Dies", "groundtruth"))
-    assert dead.summary["status"] == "crashed"
-    assert not is_lost(dead, 1.0, (1.0, float(stamps_m[3])))
-    assert is_lost(dead, 1.0, (1.5, 1.7))
-    assert not is_lost(blind, 1.0, (1.0, 1.7))
-    assert is_lost(blind, 1.0, (2.0, 3.0))  # where it never came
+
+    def of(slam):
+        return run_slam(stretch, run.setup.with_slam(slam=slam))
+
+    died = of("picky_backends:Dies")
+    fifth_m = 1.0 + died.motion()["progress_m"][4]
+    assert died.summary["status"] == "crashed"
+    assert not is_lost(died, 1.0, (1.0, fifth_m - 1e-6))
+    assert is_lost(died, 1.0, (1.0, fifth_m + 1e-6))
+    assert is_lost(died, 1.0, (1.5, 1.7))
+    began_late = of("picky_backends:Late")
+    assert not is_lost(began_late, 1.0, (1.0, 1.7))
+    assert is_lost(began_late, 1.0, (0.9, 1.0))  # only its first frame, and never tracked there
+    assert is_lost(began_late, 1.0, (2.0, 3.0))  # where it never came
 
 
 def test_an_interruption_leaves_whole_run_folders_and_no_frames(dizzy_run, tmp_path):

@@ -7,7 +7,11 @@ import yaml
 from slamgym.agents import Cautious, LookAround, PathFollower
 from slamgym.errors import ConfigError
 from slamgym.explain.source import read_run, runs_in
-from tests.explain.conftest import drive
+from slamgym.study.drive_work import FRAMES, record_planned_drive
+from slamgym.study.folder import Plan, StudyFolder, write_plan
+from slamgym.study.planned import PlannedDrive, PlannedRun
+from slamgym.study.slam_work import run_planned
+from tests.explain.conftest import HALL, drive
 
 
 def test_what_a_run_folder_tells(dizzy_run):
@@ -69,3 +73,25 @@ def test_what_is_no_run_is_refused(tmp_path):
 
 def test_a_run_is_itself(dizzy_run):
     assert runs_in(dizzy_run) == [dizzy_run]
+
+
+def test_of_a_study_the_runs_with_a_loss_that_can_be_driven_again(hall, tmp_path):
+    study = StudyFolder(tmp_path)
+    driven = PlannedDrive("hall-0", "hall", "hall #0", {**HALL, "path_length_m": 6.0})
+    recorded = PlannedDrive("seq", "seq", "seq", {}, sequence=str(study.frames("hall-0") / FRAMES))
+    runs = [
+        PlannedRun("hall-0/dizzy", driven, {"slam": "picky_backends:Dizzy"}, 1, {}, busy_processes=1),
+        PlannedRun("hall-0/groundtruth", driven, {"slam": "groundtruth"}, 1, {}),
+        PlannedRun("seq/dizzy", recorded, {"slam": "picky_backends:Dizzy"}, 1, {}),
+    ]
+    write_plan(study, Plan("study", "", (), tuple(run.run_id for run in runs)))
+    assert runs_in(tmp_path) == []
+    for one in (driven, recorded):
+        record_planned_drive(one, study.frames(one.drive_id))
+    results = [run_planned(run, study.frames(run.drive.drive_id), study.run(run.run_id)) for run in runs]
+    assert [result["loss_count"] > 0 for result in results] == [True, False, True]
+    assert runs_in(tmp_path) == [study.run("hall-0/dizzy")]
+    run = read_run(study.run("hall-0/dizzy"))
+    assert (run.setup.busy_processes, run.agent, len(run.losses)) == (1, PathFollower, results[0]["loss_count"])
+    with pytest.raises(ConfigError, match="over a recorded sequence"):
+        read_run(study.run("seq/dizzy"))

@@ -173,6 +173,18 @@ def test_a_run_that_kills_its_worker_twice_is_crashed_and_no_other_is(study, seq
     same_but_for_times(run_study(spec, tmp_path / "out", 2), done)
 
 
+def test_runs_of_a_drive_that_kills_its_worker_cannot_be_run(study, sequences, deadly, tmp_path, monkeypatch):
+    package = tmp_path / "site" / "deadly-1.0.dist-info"
+    package.mkdir(parents=True)
+    (package / "METADATA").write_text("Metadata-Version: 2.1\nName: deadly\nVersion: 1.0\n")
+    (package / "entry_points.txt").write_text("[slamgym.scenes]\ndeadly = deadly_scene:Deadly\n")
+    monkeypatch.syspath_prepend(str(package.parent))
+    text = lines(sequences[:1], 1).replace("paths: [", "paths: [{scene: deadly:1, seeds: 1}, ")
+    runs = run_study(study(text), tmp_path / "out", 2).runs
+    assert runs["status"].tolist() == ["not_run"] * 2 + ["ok"] * 2
+    assert runs["failure"][:2].str.startswith("the drive could not be rendered: its worker process ended").all()
+
+
 def test_a_worker_that_dies_once_costs_nothing(study, sequences, deadly, tmp_path):
     marker = tmp_path / "marker"
     more = f"fixed: {{slam_options: {{marker: '{marker}'}}}}"
@@ -218,7 +230,7 @@ def small_disk(tmp_path):
 
 
 def test_a_full_disk_stops_the_study_and_loses_nothing(study, sequences, small_disk, whole):
-    spec, place = study(lines(sequences[:2])), small_disk("size=700k")
+    spec, place = study(lines(sequences[:2])), small_disk("size=1000k")
     with pytest.raises(OutputError, match=r"No space left on device.+of 8 runs are done and stay") as stopped:
         run_study(spec, place, 2)
     assert "\n" not in str(stopped.value)
