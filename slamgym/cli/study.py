@@ -18,7 +18,8 @@ from slamgym.report.page import write_report
 from slamgym.report.study import study_content
 from slamgym.study.estimate import estimate
 from slamgym.study.execution import OnProgress, StudyProgress
-from slamgym.study.plan import plan_study
+from slamgym.study.folder import StudyFolder
+from slamgym.study.plan import plan_study, run_count
 from slamgym.study.pool import cores
 from slamgym.study.results import StudyResults
 from slamgym.study.run import run_study
@@ -27,6 +28,7 @@ from slamgym.study.table import NOT_RUN
 
 PLAIN_S = 30.0
 """Between two lines about the progress where there is no terminal."""
+LINES_OF_REASONS = 5
 
 
 @dataclass(kw_only=True)
@@ -76,19 +78,13 @@ class Study:
             say(results, f"about {_duration(about.seconds(workers))} with {workers} workers, {disk}")
 
     def _run(self, spec: StudySpec) -> StudyResults:
-        last: list[StudyProgress] = []
-        with _shown_progress() as show:
-
-            def on_progress(progress: StudyProgress) -> None:
-                last[:] = [progress]
-                show(progress)
-
-            try:
-                return run_study(spec, self.out, self.workers, self.dask, on_progress)
-            except KeyboardInterrupt:
-                done = f"; {last[0].done} of {last[0].planned} runs are done and stay" if last else ""
-                say(notes, f"interrupted{done}: the same line goes on")
-                raise
+        try:
+            with _shown_progress() as show:
+                return run_study(spec, self.out, self.workers, self.dask, show)
+        except KeyboardInterrupt:
+            done = len(StudyFolder(self.out).finished_runs())
+            say(notes, f"interrupted; {done} of {run_count(spec)} runs are done and stay: the same line goes on")
+            raise
 
 
 @contextmanager
@@ -133,6 +129,8 @@ def _duration(seconds: float) -> str:
 
 
 def _remarks(done: StudyResults) -> Iterator[str]:
-    not_run = done.runs[done.runs["status"] == NOT_RUN]
-    for failure, runs in not_run.groupby("failure"):
-        yield f"{len(runs)} runs could not be run, and are tried again by the same line: {failure}"
+    reasons = done.runs["failure"][done.runs["status"] == NOT_RUN].value_counts()
+    for failure, count in reasons.head(LINES_OF_REASONS).items():
+        yield f"{count} runs could not be run, and are tried again by the same line: {failure}"
+    if more := reasons.iloc[LINES_OF_REASONS:].sum():
+        yield f"and {more} more runs could not be run, see the report"

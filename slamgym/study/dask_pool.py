@@ -3,12 +3,13 @@
 import os
 import tempfile
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Future
 from importlib import import_module
 from pathlib import Path
 from typing import Any, ClassVar
 
-from slamgym.errors import ConfigError
+from slamgym.errors import ConfigError, SlamError
+from slamgym.study.pool import SCHEDULER_GONE
 
 CONNECT_S = 30.0
 """Longest wait for the scheduler, and for the first worker."""
@@ -32,7 +33,7 @@ class DaskPool:
             self._client = distributed.Client(address, timeout=CONNECT_S)
         except (OSError, ValueError, TypeError) as error:  # a timeout is an OSError
             raise ConfigError(
-                f"--dask: expected the address of a Dask scheduler, got {address!r}, where none answers "
+                f"dask: expected the address of a Dask scheduler, got {address!r}, where none answers "
                 f"({type(error).__name__}); start one with `dask scheduler`"
             ) from None
         try:
@@ -43,10 +44,13 @@ class DaskPool:
             raise
 
     def capacity(self) -> int:
-        threads: dict[str, int] = self._client.nthreads()
+        try:
+            threads: dict[str, int] = self._client.nthreads()
+        except (OSError, CancelledError):
+            raise SlamError(SCHEDULER_GONE) from None
         if several := [worker for worker, count in threads.items() if count != 1]:
             raise ConfigError(
-                f"--dask: expected workers of one thread each, got {several[0]} with {threads[several[0]]}; start them "
+                f"dask: expected workers of one thread each, got {several[0]} with {threads[several[0]]}; start them "
                 "with `dask worker --nworkers N --nthreads 1`"
             )
         return len(threads)
@@ -64,7 +68,7 @@ class DaskPool:
             self._client.wait_for_workers(1, CONNECT_S)
         except TimeoutError:
             raise ConfigError(
-                f"--dask: expected workers at {self._address}, got none in {CONNECT_S:.0f} s; start them with "
+                f"dask: expected workers at {self._address}, got none in {CONNECT_S:.0f} s; start them with "
                 f"`dask worker {self._address} --nworkers N --nthreads 1`"
             ) from None
         self.capacity()
@@ -74,7 +78,7 @@ class DaskPool:
             if answer is not True:
                 why = "does not see it" if answer is False else f"cannot look ({answer!r}): is slamgym installed there?"
                 raise ConfigError(
-                    f"--dask: expected {folder} in a file system that all workers share, but {worker} {why}"
+                    f"dask: expected {folder} in a file system that all workers share, but {worker} {why}"
                 )
 
 
@@ -82,7 +86,7 @@ def _distributed() -> Any:
     try:
         return import_module("distributed")
     except ImportError:
-        raise ConfigError("--dask: expected the package distributed; pip install 'slamgym[dask]'") from None
+        raise ConfigError("dask: expected the package distributed; pip install 'slamgym[dask]'") from None
 
 
 def _sees(file: str) -> bool:

@@ -11,7 +11,7 @@ from slamgym.study.costs import Costs
 from slamgym.study.folder import StudyFolder
 from slamgym.study.growing_table import GrowingTable
 from slamgym.study.planned import PlannedDrive, PlannedRun
-from slamgym.study.pool import Pool
+from slamgym.study.pool import SCHEDULER_GONE, Pool
 from slamgym.study.schedule import Schedule, Work, name_of
 from slamgym.study.table import not_run_row, run_row
 from slamgym.study.work import Outcome, carry_out, write_crashed
@@ -63,17 +63,17 @@ class Execution:
         self._begin, self._done_before = time.monotonic(), len(table.done)
 
     def run(self, interrupted: Callable[[], bool]) -> None:
+        self._tell()
         while self._runs_left:
             self._begin_more()
-            self._tell()
             if not self._under_way:  # all workers of the cluster are gone; others may come
                 time.sleep(LOOK_S)
             for future in wait(self._under_way, LOOK_S, FIRST_COMPLETED).done:
                 self._conclude(future, self._under_way.pop(future))
             self._table.save_now_and_then()
+            self._tell()
             if interrupted():
                 raise KeyboardInterrupt
-        self._tell()
 
     def _begin_more(self) -> None:
         workers = min(self._pool.capacity(), self._most_workers)
@@ -87,7 +87,7 @@ class Execution:
         except self._pool.lost:
             outcome = self._after_death(work)
         except CancelledError:
-            raise SlamError("the study was stopped: lost the cluster's scheduler; start it again to go on") from None
+            raise SlamError(SCHEDULER_GONE) from None
         if outcome is None:
             self._schedule.again(work)
         elif outcome.cannot_write:

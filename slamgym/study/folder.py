@@ -130,6 +130,8 @@ def locked(folder: StudyFolder) -> Iterator[None]:
             raise OutputError(
                 f"{folder.path}: a study runs there already ({file.read().strip()}); wait until it is done, or stop it"
             ) from None
+        except OSError as error:
+            raise OutputError(f"cannot lock {folder.lock}: {error.strerror}; name another folder") from None
         file.truncate(0)
         since = datetime.now().astimezone().isoformat(" ", "seconds")
         file.write(f"process {os.getpid()} on {socket.gethostname()} since {since}\n")
@@ -165,10 +167,11 @@ def write_plan(folder: StudyFolder, plan: Plan) -> None:
 
 def check_grown(folder: StudyFolder, plan: Plan) -> None:
     """Raise OutputError when there is a plan already, and runs of it are not in this one."""
-    before = read_plan(folder).run_ids if folder.plan.exists() else ()
-    planned = set(plan.run_ids)
-    if gone := [run_id for run_id in before if run_id not in planned]:
+    if not folder.plan.exists():
+        return
+    before, planned = read_plan(folder), set(plan.run_ids)
+    if gone := [run_id for run_id in before.run_ids if run_id not in planned]:
         raise OutputError(
-            f"{folder.path}: expected the study that was begun there, or one that has all of its runs; "
-            f"{len(gone)} of its {len(before)} are not in this one, such as {gone[0]}; name another folder"
+            f"{folder.path}: expected the study {before.name!r} that was begun there, or one that has all of its runs; "
+            f"{len(gone)} of its {len(before.run_ids)} are not in this one, such as {gone[0]}; name another folder"
         )

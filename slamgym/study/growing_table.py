@@ -20,7 +20,8 @@ class GrowingTable:
     def __init__(self, folder: StudyFolder, plan: Plan) -> None:
         self.folder, self.plan = folder, plan
         table = current_table(folder, plan)
-        self._saved: pd.DataFrame = table[table["status"] != NOT_RUN]  # those are tried again
+        # Those that could not be begun, and those whose folder somebody removed, are to be run again.
+        self._saved: pd.DataFrame = table[table["run_id"].isin(folder.finished_runs())]
         self._new: list[Row] = []
         self.done: set[str] = set(self._saved["run_id"])
         self.failed = int((self._saved["success"] == False).sum()) if len(self._saved) else 0  # noqa: E712

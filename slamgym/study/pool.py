@@ -13,6 +13,7 @@ from slamgym.errors import ConfigError
 from slamgym.slam.process_tree import process_tree
 from slamgym.slam.program import signal_after
 
+SCHEDULER_GONE = "the cluster's scheduler is gone; what is done stays: start the study again to go on"
 START_S = 120.0
 """Longest time that a new worker may take to import slamgym."""
 
@@ -20,7 +21,8 @@ START_S = 120.0
 class Pool(Protocol):
     """Workers that do one thing at a time.
 
-    A future ends with one of `lost` when its worker died, or several did; after `tries` of it the work is to blame.
+    A future ends with one of `lost` when its worker died, or several did; after `tries` of it the work is to blame. It
+    is cancelled when all of them are out of reach.
     """
 
     @property
@@ -79,16 +81,15 @@ class LocalPool:
 
     def close(self) -> None:
         for worker in self._workers:
-            for pid in process_tree(worker.pid):
-                with suppress(ProcessLookupError):
-                    os.kill(pid, signal.SIGKILL)
+            _kill(worker)
         for worker in self._workers:
             worker.executor.shutdown(cancel_futures=True)
 
     def _replace_dead(self, slot: int) -> None:
         try:
             self._workers[slot].executor.submit(os.getpid).result(START_S)
-        except BrokenProcessPool:
+        except (BrokenProcessPool, TimeoutError):
+            _kill(self._workers[slot])
             self._workers[slot] = _started(*_start(self._threads))
 
 
@@ -107,6 +108,12 @@ def _started(executor: ProcessPoolExecutor, pid: Future[int]) -> _Worker:
             "expected worker processes to start, got one that ended at once, see above; in a script of your own, call "
             'run_study below `if __name__ == "__main__":`'
         ) from None
+
+
+def _kill(worker: _Worker) -> None:
+    for pid in process_tree(worker.pid):
+        with suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
 
 
 def _begin(parent_pid: int) -> None:

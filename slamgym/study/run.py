@@ -72,7 +72,8 @@ def _told_how_to_go_on(table: GrowingTable) -> Iterator[None]:
     try:
         yield
     except OutputError as error:
-        told = f"{len(table.done)} of {len(table.plan.run_ids)} runs are done and stay: start it again to go on"
+        done = len(table.folder.finished_runs())
+        told = f"{done} of {len(table.plan.run_ids)} runs are done and stay: start it again to go on"
         raise OutputError(f"the study was stopped: {error}; {told}") from None
     finally:
         table.folder.tidy()

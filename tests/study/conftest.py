@@ -86,9 +86,10 @@ class StudyProcess:
         self.process.kill()
         self.process.wait()
 
-    def all_gone(self) -> bool:
-        """Whether all of its processes end within some seconds."""
-        return wait_for(lambda: not self.pids(), 10.0)
+    def orphans(self) -> list[str]:
+        """What is left of its processes after a while; one that was just starting looks for its parent when it has."""
+        wait_for(lambda: not self.pids(), 60.0)
+        return [Path(f"/proc/{pid}/cmdline").read_text() for pid in self.pids()]
 
     def close(self) -> None:
         for pid in self.pids():

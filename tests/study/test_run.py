@@ -1,5 +1,6 @@
 import os
 import random
+import shutil
 import signal
 import subprocess
 import time
@@ -100,6 +101,11 @@ def test_what_is_done_is_not_done_again_and_a_study_may_grow(study, sequences, w
     assert len(after) == 8
     same_but_for_times(grown, whole)
     assert files(out) == files(whole.folder)
+    removed = next(iter(after))
+    shutil.rmtree(removed)
+    assert len(run_study(study(lines(sequences[:2], repeats=2)), out, 2).runs) == 8
+    again = run_folders(out)
+    assert [path for path in again if again[path] != after[path]] == [removed]
     with pytest.raises(OutputError, match="6 of its 8 are not in this one"):
         run_study(study(lines(sequences[:1], repeats=1)), out)
 
@@ -119,7 +125,7 @@ def test_a_study_that_is_killed_at_any_moment_loses_and_repeats_nothing(
         one = started(tmp_path / "study.yaml", out)
         wait_until(lambda one=one: one.process.poll() is not None, rng.uniform(1.0, 1.5 * took_s / kills + 4.0))
         one.kill()
-        assert one.all_gone()
+        assert one.orphans() == []
         now = run_folders(out)
         assert finished.items() <= now.items()
         finished = now
@@ -152,7 +158,7 @@ def test_interrupt_stops_soon_and_keeps_what_is_done(study, sequences, started, 
     assert one.process.returncode == -signal.SIGINT
     assert output.strip().endswith("KeyboardInterrupt")
     assert output.count("Traceback") == 1  # none of the workers'
-    assert one.all_gone()
+    assert one.orphans() == []
     done = set(pd.read_parquet(out / "runs.parquet")["run_id"])
     assert done == {f"{path.parent.name}/{path.name}" for path in run_folders(out)}
     assert not [name for name in files(out) if "/." in name]
