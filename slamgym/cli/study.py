@@ -93,7 +93,8 @@ def _shown_progress() -> Iterator[OnProgress]:
     if not notes.is_terminal:
         yield _plain_lines()
         return
-    bar = Progress(BarColumn(), TextColumn("{task.description}", markup=False), console=notes, transient=True)
+    columns = BarColumn(), TextColumn("{task.description}", markup=False)
+    bar = Progress(*columns, console=notes, transient=True, refresh_per_second=2)
     with bar:
         task = bar.add_task("starting", total=None)
 
