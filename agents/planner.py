@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
 from itertools import product
 from math import ceil
 from typing import cast
@@ -42,11 +41,11 @@ def plan_path(
     free: where the robot's centre may be, from `free_space`; the path stays within half a cell of it.
     tour: "one_way" is exactly `path_length_m` long; "round_trip" ends where it starts and is at least
     that long, mostly a few percent more and at times up to twice that; "lap" is a round trip that then takes its first
-    3 m once more, these included in its length.
+    3 m once more, these included in its length, which is at least 6 m.
 
     Legs lead to goals at least 2.5 m away where the house has them, keep away from obstacles, and are joined by curves;
     where there is no room for a curve the path turns on the spot. Its `goals_m` tell where one leg ends and the next
-    begins. Raises SceneError when no such path is found.
+    begins. Raises SceneError when no such path is found, ConfigError for an unknown tour and for a shorter lap.
     """
     if tour not in TOURS:
         raise ConfigError(unknown_word("tour", tour, TOURS))
@@ -134,6 +133,16 @@ def _round_trip(roads: _Roads, length_m: float, rng: np.random.Generator, again_
     return min(found, key=lambda path: path.length_m)
 
 
+def _lap(roads: _Roads, length_m: float, rng: np.random.Generator) -> Path:
+    """A round trip that then takes its first LAP_AGAIN_M once more; a shorter one than that is never found."""
+    if length_m < 2 * LAP_AGAIN_M:
+        raise ConfigError(
+            f"path_length_m: a lap needs at least {2 * LAP_AGAIN_M:g} m, of which the first {LAP_AGAIN_M:g} m are "
+            f"driven twice, got {length_m:g} m; ask for a longer one, or for a round trip"
+        )
+    return _round_trip(roads, length_m, rng, LAP_AGAIN_M)
+
+
 def _loop(roads: _Roads, home: int, length_m: float, rng: np.random.Generator) -> _Way:
     """A way through random goals and back to `home`, about `length_m` long."""
     to_home = roads.distances(home)
@@ -210,5 +219,5 @@ def _no_path(length_m: float) -> SceneError:
 TOURS: dict[str, Callable[[_Roads, float, np.random.Generator], Path]] = {
     "one_way": _one_way,
     "round_trip": _round_trip,
-    "lap": partial(_round_trip, again_m=LAP_AGAIN_M),
+    "lap": _lap,
 }

@@ -70,7 +70,7 @@ def test_after_an_interrupt_it_says_how_to_go_on(file, tmp_path):
     words = [sys.executable, "-m", "slamgym.cli", "study", file, "--size", "many", "--out", out]
     with subprocess.Popen(words, stderr=subprocess.PIPE, start_new_session=True, text=True) as process:
         deadline = time.monotonic() + 120
-        while len(list(out.glob("runs/*/*"))) < 2 and time.monotonic() < deadline:
+        while len(list(out.glob("runs/*/[!.]*"))) < 2 and time.monotonic() < deadline:
             time.sleep(0.05)
         os.killpg(process.pid, signal.SIGINT)
         told = process.communicate(timeout=60)[1]

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 from slamgym.params import DriveParams, SlamInLoopParams
@@ -9,15 +10,20 @@ from slamgym.render import MAX_BRIGHTNESS
 
 RICHEST_TEXTURE = 2.0
 """The most that loaders with an option `texture` take."""
+STRAIGHT_RADPS = 0.1
+"""Turning no quicker than that, it drove straight on."""
 
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """All that a run depends on besides its path. busy_processes: how many kept the computer busy meanwhile."""
+    """All that a run depends on besides its path. busy_processes: how many kept the computer busy meanwhile.
+    turned_radps: the quickest that it turned around the loss, which may be far below its top turn rate.
+    """
 
     drive: DriveParams
     slam: SlamInLoopParams
     busy_processes: int = 0
+    turned_radps: float = inf
 
     def with_drive(self, **params: Any) -> "Setup":
         return replace(self, drive=self.drive.model_copy(update=params))
@@ -28,6 +34,12 @@ class Setup:
 
 Change = Callable[[Setup], Setup | None]
 """The changed setup, or None where there is nothing to change."""
+
+
+def _half_the_turn_rate(setup: Setup) -> Setup | None:
+    """Half of what it turned at: half of a top rate that it never reached would change nothing."""
+    turn_rate = min(setup.drive.top_turn_rate, setup.turned_radps)
+    return setup.with_drive(turn_rate=turn_rate / 2) if turn_rate > STRAIGHT_RADPS else None
 
 
 def _half_the_speed(setup: Setup) -> Setup:
@@ -48,7 +60,7 @@ def _richer_texture(setup: Setup) -> Setup | None:
 
 
 CHANGES: dict[str, Change] = {
-    "half the turn rate": lambda setup: setup.with_drive(turn_rate=setup.drive.top_turn_rate / 2),
+    "half the turn rate": _half_the_turn_rate,
     "half the speed": _half_the_speed,
     "every frame": lambda setup: setup.with_slam(stride=0) if setup.slam.stride else None,
     "more light": _more_light,

@@ -16,9 +16,17 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from slamgym.explain.cases import Case, Metres
-from slamgym.explain.changes import Setup, changes_of
+from slamgym.explain.changes import changes_of
 from slamgym.explain.result import CaseResult
-from slamgym.explain.stretch import Stretches, Variant, check_house, is_lost, run_slam, why_not_comparable
+from slamgym.explain.stretch import (
+    Stretches,
+    Variant,
+    check_house,
+    is_lost,
+    quickest_turn,
+    run_slam,
+    why_not_comparable,
+)
 from slamgym.explain.verdict import Count, judge
 from slamgym.run_folder import write_run
 
@@ -98,11 +106,15 @@ def _first_look(bench: Bench, stretch_m: Metres) -> Count:
 
 def _compared(bench: Bench, stretch_m: Metres, seen: Mapping[Metres, Count]) -> CaseResult:
     setup = bench.case.run.setup
+    unchanged = bench.stretches.drive(Variant(setup, stretch_m))
+    setup = replace(setup, turned_radps=quickest_turn(unchanged, stretch_m[0], bench.case.window_m))
     controls = {name: Variant(setup, begin) for name, begin in _starts(stretch_m).items()}
-    changes, left_out = _comparable(bench, changes_of(setup), stretch_m)
+    variants = {name: Variant(changed, stretch_m) for name, changed in changes_of(setup).items()}
+    left_out = {name: why_not_comparable(unchanged, bench.stretches.drive(one)) for name, one in variants.items()}
+    changes = {name: variant for name, variant in variants.items() if not left_out[name]}
     counts = bench.count({**controls, **changes})
     judgement = judge({name: counts[name] for name in controls}, {name: counts[name] for name in changes})
-    return CaseResult(bench.case, tuple(seen.items()), judgement, left_out)
+    return CaseResult(bench.case, tuple(seen.items()), judgement, {name: why for name, why in left_out.items() if why})
 
 
 def _starts(stretch_m: Metres) -> dict[str, Metres]:
@@ -110,18 +122,3 @@ def _starts(stretch_m: Metres) -> dict[str, Metres]:
     begin_m, end_m = stretch_m
     moved_m = begin_m - START_MOVED_M if begin_m >= START_MOVED_M else begin_m + START_MOVED_M
     return {UNCHANGED: stretch_m, AGAIN: stretch_m, ELSEWHERE: (moved_m, end_m)}
-
-
-def _comparable(
-    bench: Bench, setups: Mapping[str, Setup], stretch_m: Metres
-) -> tuple[dict[str, Variant], dict[str, str]]:
-    """The changes that are tried, and why others are not."""
-    unchanged = bench.stretches.drive(Variant(bench.case.run.setup, stretch_m))
-    changes, left_out = {}, {}
-    for name, setup in setups.items():
-        variant = Variant(setup, stretch_m)
-        if why := why_not_comparable(unchanged, bench.stretches.drive(variant)):
-            left_out[name] = why
-        else:
-            changes[name] = variant
-    return changes, left_out

@@ -100,6 +100,14 @@ def why_not_comparable(unchanged: DrivenStretch, changed: DrivenStretch) -> str:
     return ""
 
 
+def quickest_turn(stretch: DrivenStretch, begin_m: float, window_m: Metres) -> float:
+    """The largest yaw rate to either side in the window, rad/s; begin_m: where the stretch begins."""
+    motion = stretch.episode.motion()
+    progress_m = begin_m + np.array(motion["progress_m"])
+    within = (progress_m >= window_m[0]) & (progress_m <= window_m[1])
+    return float(np.max(np.abs(motion["yaw_rate_radps"]), where=within, initial=0.0))
+
+
 def run_slam(stretch: DrivenStretch, setup: Setup) -> Episode:
     """One SLAM run over the stretch; raises what `replay` raises."""
     with busy(setup.busy_processes):

@@ -45,6 +45,7 @@ class Section:
 @dataclass(frozen=True, slots=True, eq=False)
 class ReportContent:
     """title: the study's. facts: what was run, label -> value. headlines: what the data say, the most important first.
+    notices: what a reader must know before these, such as that the study is not finished.
 
     All text is plain, with names of files in it as they are; who writes the page escapes it.
     """
@@ -54,3 +55,4 @@ class ReportContent:
     facts: Mapping[str, Any]
     headlines: tuple[str, ...]
     sections: tuple[Section, ...]
+    notices: tuple[str, ...] = ()

@@ -101,7 +101,14 @@ def test_a_small_house_has_paths_too():
     free = np.zeros((60, 60), dtype=bool)
     free[20:40, 20:40] = True
     for tour in ("one_way", "round_trip", "lap"):
-        assert plan((OccupancyGrid(~free, np.zeros(2), 0.05), free), 5.0, tour=tour).length_m >= 5.0 - 1e-9
+        assert plan((OccupancyGrid(~free, np.zeros(2), 0.05), free), 6.0, tour=tour).length_m >= 6.0 - 1e-9
+
+
+def test_a_lap_too_short_to_close_a_loop_is_refused(flat):
+    assert plan(flat(0), 6.0, tour="lap").length_m >= 6.0
+    with pytest.raises(ConfigError, match=r"^path_length_m: a lap needs at least 6 m, .* got 5\.9 m; ask for") as short:
+        plan(flat(0), 5.9, tour="lap")
+    assert "\n" not in str(short.value)
 
 
 def test_errors():

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -46,6 +48,14 @@ def differing(base, changed):
 
 def values(of):
     return {**of.drive.model_dump(), **of.slam.model_dump(), "busy_processes": of.busy_processes}
+
+
+def test_half_the_turn_rate_is_half_of_what_it_turned_at():
+    slow, straight = (replace(setup(turn_rate=6.0), turned_radps=radps) for radps in (1.8, 0.05))
+    changed = CHANGES["half the turn rate"](slow)
+    assert changed is not None
+    assert changed.drive.turn_rate == 0.9
+    assert CHANGES["half the turn rate"](straight) is None
 
 
 @pytest.mark.parametrize(("before", "after"), [(0.1, 1.0), (0.7, 1.4), (1.0, 2.0), (3.0, 4.0), (4.0, None)])

@@ -57,7 +57,7 @@ def files(folder):
 
 def run_folders(folder):
     """Every finished run, and when it was put in its place."""
-    return {path: path.stat().st_ctime_ns for path in (folder / "runs").glob("*/*")}
+    return {path: path.stat().st_ctime_ns for path in (folder / "runs").glob("*/[!.]*")}
 
 
 @pytest.fixture

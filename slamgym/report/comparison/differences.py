@@ -45,8 +45,10 @@ class MetricChange:
         ends = self.metric.worse_sign * (np.array([self.change.low, self.change.high]) - neutral)
         estimate = self.metric.worse_sign * (self.change.estimate - neutral)
         tolerance = self.metric.tolerance or 0.0
-        if self.p < SIGNIFICANT and abs(estimate) > tolerance and (ends.min() > 0 or ends.max() < 0):
-            return "worse" if estimate > 0 else "better"
+        if self.p < SIGNIFICANT and estimate > tolerance and ends.min() > 0:
+            return "worse"
+        if self.p < SIGNIFICANT and estimate < -tolerance and ends.max() < 0:
+            return "better"
         return "alike" if np.abs(ends).max() <= tolerance else "not clear"
 
     @property
@@ -112,7 +114,7 @@ def metric_change(pairs: pd.DataFrame, metric: Metric) -> MetricChange:
         return MetricChange(metric, 0, np.nan, np.nan, Interval(np.nan, np.nan, np.nan), np.nan)
     by_path = np.asarray(path_changes(both, metric), dtype=np.float64)
     new, baseline = (_mean(both, f"{metric.name}.{side}", metric) for side in ("new", "baseline"))
-    return MetricChange(metric, len(by_path), new, baseline, _interval(both, by_path, metric), sign_flip_p(by_path))
+    return MetricChange(metric, len(by_path), new, baseline, _interval(by_path, metric), sign_flip_p(by_path))
 
 
 def _mean(pairs: pd.DataFrame, column: str, metric: Metric) -> float:
@@ -122,10 +124,10 @@ def _mean(pairs: pd.DataFrame, column: str, metric: Metric) -> float:
     return float(np.exp(mean)) if metric.change == "ratio" else mean
 
 
-def _interval(pairs: pd.DataFrame, by_path: FloatArray, metric: Metric) -> Interval:
+def _interval(by_path: FloatArray, metric: Metric) -> Interval:
+    """Of the mean over the paths, each of them once: the same weights as the estimate and the p-value have."""
     if metric.name in SHARES:
-        interval = clustered_difference(pair_changes(pairs, metric), pairs["place"])
-        return replace(interval, estimate=float(by_path.mean()))
+        return clustered_difference(by_path, np.arange(len(by_path)))
     interval = bootstrap_interval(by_path, "mean")
     return interval.exp() if metric.change == "ratio" else interval
 
