@@ -30,7 +30,7 @@ MIN_LEG_M = 0.3
 ROUND_TRIP_ATTEMPTS = 16
 ROUND_TRIP_EXCESS = 1.03
 LAP_AGAIN_M = 3.0
-"""So far a lap goes on beyond its start: enough for ORB-SLAM3 to see it again, from the same side, and close the loop."""
+"""So far a lap goes on beyond its start: enough for ORB-SLAM3 to see it again, from the same side, and close a loop."""
 
 
 def plan_path(
@@ -134,10 +134,10 @@ def _round_trip(roads: _Roads, length_m: float, rng: np.random.Generator, again_
 
 
 def _lap(roads: _Roads, length_m: float, rng: np.random.Generator) -> Path:
-    """A round trip that then takes its first LAP_AGAIN_M once more; a shorter one than that is never found."""
+    """A round trip that then takes its first LAP_AGAIN_M once more; a shorter one would be far longer than asked."""
     if length_m < 2 * LAP_AGAIN_M:
         raise ConfigError(
-            f"path_length_m: a lap needs at least {2 * LAP_AGAIN_M:g} m, of which the first {LAP_AGAIN_M:g} m are "
+            f"path_length_m: expected at least {2 * LAP_AGAIN_M:g} m for a lap, whose first {LAP_AGAIN_M:g} m are "
             f"driven twice, got {length_m:g} m; ask for a longer one, or for a round trip"
         )
     return _round_trip(roads, length_m, rng, LAP_AGAIN_M)

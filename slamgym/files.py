@@ -5,12 +5,14 @@ import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import Literal
 
 from slamgym.errors import OutputError
 
 _RECORDED_DIGITS = 12
+_MOST_FLUSHED = 64
 
 
 def check_free(path: Path, what: Literal["file", "folder"]) -> None:
@@ -32,8 +34,8 @@ def draft(path: Path) -> Iterator[Path]:
     """Where the block writes a file, or makes a folder: beside `path`, moved there when the block ends well, else gone.
 
     It is alone in a folder of its own: what the block puts there besides is gone in either case. Others see what was at
-    `path` before or all of the new; links are followed, missing folders above are made. An OSError, of the block too,
-    becomes an OutputError.
+    `path` before or all of the new, after a power cut, too, unless the folder holds very many files; links are
+    followed, missing folders above are made. An OSError, of the block too, becomes an OutputError.
     """
     path = path.resolve()
     with _told(path):
@@ -41,6 +43,7 @@ def draft(path: Path) -> Iterator[Path]:
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}-") as folder:
             place = Path(folder) / path.name
             yield place
+            _flush(place)
             place.replace(path)
 
 
@@ -65,6 +68,21 @@ def recorded_hash(path: Path) -> str:
 def short_hash(sha256: str) -> str:
     """So much of a SHA-256 in hex as is recorded with a result."""
     return sha256[:_RECORDED_DIGITS]
+
+
+def _flush(place: Path) -> None:
+    """Have the disk hold what was written before it holds the new name. Of thousands of images that would take longer
+    than to write them.
+    """
+    written = [place, *islice(place.rglob("*"), _MOST_FLUSHED)]
+    if len(written) > _MOST_FLUSHED:
+        return
+    for path in written:
+        number = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(number)
+        finally:
+            os.close(number)
 
 
 @contextmanager

@@ -32,7 +32,10 @@ def load_class(what: str, target: str, parts: Sequence[str], protocol: str, opti
         found = getattr(import_module(module), attribute)
     except Exception as error:  # the module may be anybody's, and fail in any way
         why = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise ConfigError(f"{what}: expected an importable 'module:class', got {why}") from error
+        raise ConfigError(
+            f"{what}: expected an importable 'module:class', got {why}; install its package, or set PYTHONPATH to its "
+            "folder"
+        ) from error
     if missing := [part for part in parts if not hasattr(found, part)]:
         raise ConfigError(f"{what}: expected a class as {protocol}, without {missing}")
     if not (isinstance(found.Options, type) and issubclass(found.Options, options)):

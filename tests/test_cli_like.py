@@ -42,6 +42,9 @@ def test_the_same_run_comes_out_and_what_has_changed_is_told(folder, tmp_path, c
     ("beside", "flags"),
     [
         (["--speed", "1"], "--speed"),
+        # As it is by default.
+        (["--speed", "0.2"], "--speed"),
+        (["--max_episode_steps=10000", "--seed", "0"], "--max-episode-steps, --seed"),
         (["--seed", "6", "--slam-options", "features", "500"], "--seed, --slam-options"),
         (["--agent", "cautious", "--loop-closure", "True"], "--agent, --loop-closure"),
     ],

@@ -11,10 +11,10 @@ from slamgym.study.table import write_table
 PATHS = 30
 
 
-def made_up(path, failed=0, planned=None):
-    """A study of 30 paths with 3 repeats, of which the first `failed` paths fail."""
+def made_up(path, failed=0, planned=None, paths=PATHS):
+    """A study of `paths` with 3 repeats, of which the first `failed` paths fail."""
     rng = np.random.default_rng(0)
-    k = np.arange(PATHS * 3)
+    k = np.arange(paths * 3)
     success = k // 3 >= failed
     ids = [f"drive-{i // 3}/{i % 3}" for i in k]
     runs = pd.DataFrame(
@@ -73,6 +73,25 @@ def test_a_study_against_itself_has_no_regression(tmp_path, capsys):
     assert (folder / "compare-study" / "report.html").exists()
 
 
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({"paths": 5}, "expected at least 8 paths in common, got 5; run both studies on more"),
+        ({"planned": 99}, "expected all 99 runs of the new study, got 90; wait until it is finished"),
+    ],
+)
+def test_what_cannot_be_judged_does_not_pass(changes, why, tmp_path, capsys):
+    before, now = made_up(tmp_path / "before"), made_up(tmp_path / "now", **changes)
+    main(["report", str(now), str(before)])
+    capsys.readouterr()
+    with pytest.raises(SystemExit) as stopped:
+        main(["report", str(now), str(before), "--fail-on-regression"])
+    assert stopped.value.code == 2
+    printed = capsys.readouterr()
+    assert printed.err.strip().endswith(f"--fail-on-regression: cannot judge: {why}")
+    assert "report: " in printed.out
+
+
 @pytest.mark.parametrize("gate", [True, False])
 def test_a_regression_is_told_and_fails_where_asked_for(gate, tmp_path, capsys):
     before, now = made_up(tmp_path / "before", failed=1), made_up(tmp_path / "now", failed=15)
@@ -84,7 +103,7 @@ def test_a_regression_is_told_and_fails_where_asked_for(gate, tmp_path, capsys):
     else:
         main(arguments)
     printed = capsys.readouterr().out
-    assert "regression: success rate" in printed
+    assert printed.count("egression: success rate") == 1
     assert f"report: {now / 'compare-before' / 'report.html'}" in printed
 
 

@@ -1,5 +1,6 @@
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -49,8 +50,8 @@ def test_a_study_ends_with_a_table_and_a_report(file, tmp_path, capsys):
     main(["study", str(file), "--out", str(out)])
     printed = capsys.readouterr().out
     assert re.search(r"all +2 +50\.0%", printed)
-    assert re.search(r"slam groundtruth +1 +100\.0% +0\.0000 +100\.0% +1 ok", printed)
-    assert re.search(r"slam opencv +1 +0\.0% +- +0\.0% +1 init_failed", printed)  # black images; no ATE to speak of
+    assert re.search(r"SLAM groundtruth +1 +100\.0% +0\.0000 +100\.0% +1 ok", printed)
+    assert re.search(r"SLAM opencv +1 +0\.0% +- +0\.0% +1 init_failed", printed)  # black images; no ATE to speak of
     assert "report.html" in printed.replace("\n", "")
     assert (out / "report.html").exists()
     main(["study", str(file), "--out", str(out)])  # nothing is left to do
@@ -81,6 +82,16 @@ def test_after_an_interrupt_it_says_how_to_go_on(file, tmp_path):
     assert line == f"interrupted; {done} of 200 runs are done and stay: the same line goes on"
 
 
+def test_why_nothing_could_be_run_is_told(file, tmp_path, capsys):
+    shutil.copytree(file.parent, tmp_path / "copy")
+    for image in (tmp_path / "copy" / "data" / "line" / "rgb").iterdir():
+        image.write_bytes(b"no image")
+    main(["study", str(tmp_path / "copy" / "study.yaml"), "--out", str(tmp_path / "out")])
+    printed = capsys.readouterr().out
+    assert re.search(r"all +0 +-", printed)
+    assert "2 runs could not be run, and are tried again by the same line: the drive could not be" in printed
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -88,6 +99,8 @@ def test_after_an_interrupt_it_says_how_to_go_on(file, tmp_path):
         (["quik", "--out", "OUT"], "did you mean 'quick'"),
         (["FILE", "--size", "larg", "--out", "OUT"], "larg"),
         (["FILE", "--workers", "0", "--out", "OUT"], "expected at least 1"),
+        (["FILE", "--workers", "-1", "--out", "OUT", "--dry-run"], "expected at least 1, got -1"),
+        (["FILE", "--workers", "1", "--dask", "a", "--out", "OUT", "--dry-run"], "where a cluster has its own"),
         (["FILE", "--workers", "1", "--dask", "tcp://127.0.0.1:9", "--out", "OUT"], "where a cluster has its own"),
         (["FILE", "--dask", "nowhere", "--out", "OUT"], "expected the address of a Dask scheduler, got 'nowhere'"),
         (["FILE", "--out", "TAKEN"], "expected a new or empty folder"),

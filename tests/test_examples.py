@@ -13,7 +13,18 @@ ARGUMENTS = {
     "losses.py": [*SHORT, "--scenes", "procedural:0", "--seeds", "7", "--camera", "small", "--slam", "groundtruth"],
     "realism.py": [*SHORT, "--scenes", "procedural:0", "--frames", "4", "--camera", "small", "--out", "OUT"],
     "views.py": [*SHORT, "--out", "OUT.png"],
-    "own_study.py": ["--path-length-m", "6", "--scenes", "procedural:0", "--speeds", "1.0", "--camera", "small", "--out", "OUT"],
+    "own_study.py": [
+        "--path-length-m",
+        "6",
+        "--scenes",
+        "procedural:0",
+        "--speeds",
+        "1.0",
+        "--camera",
+        "small",
+        "--out",
+        "OUT",
+    ],
 }
 
 

@@ -1,6 +1,8 @@
 import hashlib
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -29,6 +31,24 @@ def test_a_folder_appears_whole_when_the_block_ends(tmp_path, exists):
         (place / "file.txt").write_text("content")
         assert path.exists() == exists
     assert list(tmp_path.rglob("*")) == [path, path / "file.txt"]
+
+
+@pytest.mark.parametrize(("files", "flushed"), [(3, {"folder", "0", "1", "2"}), (100, set())])
+def test_what_is_not_very_much_is_on_the_disk_before_it_is_in_its_place(tmp_path, monkeypatch, files, flushed):
+    seen, fsync = set(), os.fsync
+
+    def note(number):
+        assert not (tmp_path / "folder").exists()
+        seen.add(Path(f"/proc/self/fd/{number}").readlink().name)
+        fsync(number)
+
+    monkeypatch.setattr("os.fsync", note)
+    with draft(tmp_path / "folder") as place:
+        place.mkdir()
+        for name in range(files):
+            (place / str(name)).touch()
+    assert seen == flushed
+    assert len(list((tmp_path / "folder").iterdir())) == files
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])

@@ -15,6 +15,8 @@ from slamgym.types import FloatArray, IntArray
 
 # The counts of more levels than this stand upright above the axes.
 MAX_LEVEL_COUNTS = 12
+# Up to so many levels each has its tick, where they lie at least this share of their range apart.
+MAX_LEVEL_TICKS, LEAST_TICK_STEP = 8, 0.05
 
 
 class Midpoint(Protocol):
@@ -62,6 +64,7 @@ def plot_failure_curve(
     axes = figure.add_subplot()
     axes.set(xlim=_limits(x), ylim=(-0.02, 1.02), xlabel=plain(factor, 60), ylabel="share of failed runs")
     axes.yaxis.set_major_formatter("{x:.0%}")
+    set_level_ticks(axes, x)
     tidy(axes)
     handles = [] if curve is None else _draw_curve(axes, curve)
     if len(x):
@@ -83,6 +86,13 @@ def _checked(levels: ArrayLike, failed: ArrayLike, runs: ArrayLike) -> tuple[Flo
     if not (np.isfinite(x).all() and (k >= 0).all() and (k <= n).all()):
         raise ConfigError("plot_failure_curve: expected finite levels with 0 <= failed <= runs each; check the counts")
     return x[n > 0], k[n > 0], n[n > 0]
+
+
+def set_level_ticks(axes: Axes, x: FloatArray) -> None:
+    """Ticks at the levels (L,), of which some may be equal, where few are wide apart: a stride of 0.5 is none."""
+    levels = np.unique(x)
+    if 0 < len(levels) <= MAX_LEVEL_TICKS and np.all(np.diff(levels) >= LEAST_TICK_STEP * np.ptp(levels)):
+        axes.set_xticks(levels, [f"{level:.10g}" for level in levels])
 
 
 def _limits(x: FloatArray) -> tuple[float, float]:

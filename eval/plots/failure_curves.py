@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slamgym.errors import ConfigError
-from slamgym.eval.plots.failure_curve import Curve
+from slamgym.eval.plots.failure_curve import Curve, set_level_ticks
 from slamgym.eval.plots.names import plain, plain_names
 from slamgym.eval.plots.style import Look, legend_below, look, new_figure, tidy
 from slamgym.types import FloatArray, IntArray
@@ -38,6 +38,7 @@ def plot_failure_curves(series: Mapping[str, FailureCounts], *, factor: str = "s
     axes = figure.add_subplot()
     axes.set(xlim=limits, ylim=(-0.02, 1.02), xlabel=plain(factor, 60), ylabel="share of failed runs")
     axes.yaxis.set_major_formatter("{x:.0%}")
+    set_level_ticks(axes, x)
     tidy(axes)
     handles = list[Artist]()
     for i, (name, counts) in enumerate(zip(plain_names(series), series.values(), strict=True)):

@@ -25,8 +25,12 @@ def plain_names(names: Iterable[str], max_letters: int = MAX_LETTERS) -> list[st
 
 
 def percent(share: float) -> str:
-    """A share in words, rounded down: never "100 %" while a frame or a run is missing."""
-    return f"{math.floor(100.0 * share + 1e-9)} %"
+    """A share, 0 to 1, in whole percent; with one digit below 1 %, and neither 0 nor 100 % for what is not quite."""
+    if math.isnan(share):
+        return "-"
+    size = abs(100 * share)
+    digits = 1 if 0 < size < 0.95 or 99.5 <= size < 100 else 0
+    return f"{max(min(size, 99.9), 0.1) * (1 if share > 0 else -1):.1f} %" if digits else f"{100 * share + 0.0:.0f} %"
 
 
 def shorten(text: str, max_letters: int) -> str:

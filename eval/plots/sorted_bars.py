@@ -45,7 +45,7 @@ def plot_sorted_bars(
     names: what the R runs are, the same for all systems. threshold: separates good runs from failed ones, in the
     values' unit; gap: the values below and above it, between which the panel is shaded; NaN for none. failed_when: what
     failed means, said above the panels. counted: what the values are of, for example "paths"; failed: the
-    word for those that failed. Raises ConfigError.
+    word for those that failed, in the titles and beside their bars. Raises ConfigError.
     """
     runs = as_runs(values)
     _check_names(runs, names)
@@ -55,7 +55,7 @@ def plot_sorted_bars(
     all_axes = figure.subplots(len(runs), sharey=True, squeeze=False)[:, 0]
     handles: list[Artist] = []
     for i, (axes, title, numbers) in enumerate(zip(all_axes, plain_names(runs), runs.values(), strict=True)):
-        set_value_axis(axes, "y", scale, quantity, failed=True)
+        set_value_axis(axes, "y", scale, quantity, failed=True, word=failed)
         handles = _draw_threshold(axes, threshold, gap)
         _draw_bars(axes, numbers, scale, look(i).colour)
         _label_bars(axes, numbers, labels, counted)

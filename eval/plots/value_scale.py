@@ -69,15 +69,23 @@ def placed(values: FloatArray, scale: ValueScale) -> FloatArray:
 
 
 def set_value_axis(
-    axes: Axes, which: Literal["x", "y"], scale: ValueScale, quantity: str, *, failed: bool = False
+    axes: Axes,
+    which: Literal["x", "y"],
+    scale: ValueScale,
+    quantity: str,
+    *,
+    failed: bool = False,
+    word: str = "failed",
 ) -> None:
-    """Ticks as plain numbers, and the word "failed" where failed runs are; `quantity` names the metric and its unit."""
+    """Ticks as plain numbers, and with `failed` the word for failed runs where they are; `quantity` names the metric
+    and its unit.
+    """
     if scale.log:
         axes.set(**{f"{which}scale": "log"})
     axis = axes.xaxis if which == "x" else axes.yaxis
     ticks = _ticks(scale)
     labels = [f"{tick:.10g}" for tick in ticks]
-    axis.set_ticks([*ticks, scale.failed] if failed else ticks, labels=[*labels, "failed"] if failed else labels)
+    axis.set_ticks([*ticks, scale.failed] if failed else ticks, labels=[*labels, word] if failed else labels)
     axis.set_ticks(_minor_ticks(scale), minor=True)
     axis.set_minor_formatter(NullFormatter())
     axis.set_label_text(plain(quantity, 60))

@@ -3,8 +3,8 @@
 Such runs tell less than as many independent ones. How much less is the design effect: the variance of a mean when whole
 paths are drawn, over that when runs are (Kish, "Survey sampling", 1965). The intervals are those of independent runs
 whose number was divided by it, with Student's t for the number of paths (after Korn and Graubard, "Confidence intervals
-for proportions with small expected number of positive counts estimated from survey data", 1998). In simulations of 8
-runs on each of 4 to 40 paths they hold 94 to 100 % at 95 %, and 90 % where few paths make up all of few failures.
+for proportions with small expected number of positive counts estimated from survey data", 1998). How often they hold
+the truth is told with each, by simulation.
 """
 
 import numpy as np
@@ -20,7 +20,8 @@ def clustered_share(failed: ArrayLike, groups: ArrayLike, confidence: float = 0.
     """Share (0 to 1) of runs `failed` (n,), bool or a share for each, of the paths `groups` (n,), any labels.
 
     Wilson's interval. Where all runs agree, those of a path count as one. The ends are NaN for a single path, which
-    tells nothing of others. Raises ConfigError.
+    tells nothing of others. Of 8 or 24 runs on each of 6 to 40 paths it holds 93 to 100 % at 95 %, but 83 to 93 %
+    where a few paths make up all of few failures: 83 % for 12 paths and 5 % of failures. Raises ConfigError.
     """
     values, labels = _checked(failed, groups, confidence)
     share = float(values.mean())
@@ -34,15 +35,19 @@ def clustered_share(failed: ArrayLike, groups: ArrayLike, confidence: float = 0.
 def clustered_difference(differences: ArrayLike, groups: ArrayLike, confidence: float = 0.95) -> Interval:
     """Mean of differences (n,), each -1 to 1: of the shares of runs that failed in two conditions that were paired.
 
-    groups: the path of each pair (n,), any labels. The interval is Bonett and Price's ("Adjusted Wald confidence
+    groups: the path of each pair (n,), any labels. The interval extends Bonett and Price's ("Adjusted Wald confidence
     interval for a difference of binomial proportions based on paired data", 2012), which adds one pair for either
-    outcome. Where all pairs agree, those of a path count as one. The ends are NaN for a single path.
-    Raises ConfigError.
+    outcome, to differences of any size: the two pairs are as large as those that are not 0 are in the root mean square,
+    and 1 where all are 0. For outcomes of -1, 0 and 1 it is theirs. Where all pairs agree, those of a path count as
+    one. The ends are NaN for a single path. For 6 to 40 paths of 1 to 8 repeats it holds 93 to 100 % at 95 %; 48 to
+    92 % where nearly all differences are tiny and one path in ten turns wholly. Raises ConfigError.
     """
     values, labels = _checked(differences, groups, confidence)
     n = _effective_number(values, labels)
     center = n * values.mean() / (n + 2)
-    variance = (n * np.mean(values**2) + 2) / (n + 2) - center**2
+    changed = values[values != 0]
+    size = np.mean(changed**2) if len(changed) else 1.0
+    variance = (n * np.mean(values**2) + 2 * size) / (n + 2) - center**2
     half = _quantile(labels, confidence) * np.sqrt(variance / (n + 2))
     low, high = np.maximum(center - half, -1.0), np.minimum(center + half, 1.0)
     return Interval(float(values.mean()), float(low), float(high), confidence)

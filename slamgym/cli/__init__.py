@@ -17,6 +17,8 @@ EXIT_INTERRUPTED = 130
 EXIT_CLOSED_PIPE = 141
 
 PAIRS_FLAGS = ("--slam-options", "--scene-options")
+BESIDE_LIKE = {"--like", "--out", "--rerun", "--help"}
+"""What `slamgym run --like` takes: a run is repeated as it was."""
 
 COMMANDS = {
     "run": "slamgym.cli.run:Run",
@@ -37,6 +39,7 @@ def main(arguments: list[str] | None = None) -> None:
     arguments = sys.argv[1:] if arguments is None else arguments
     try:
         _refuse_repeated(arguments)
+        _refuse_beside_like(arguments)
         _parsed(arguments)()
     except SlamgymError as error:
         say(notes, f"slamgym: {error}", style="red")
@@ -59,6 +62,15 @@ def _refuse_repeated(arguments: list[str]) -> None:
             names = list(takewhile(lambda word: not word.startswith("--"), after))[::2]
             if twice := [name for name, count in Counter(names).items() if count > 1]:
                 raise ConfigError(f"{flag}: expected each name once, got {twice[0]} twice; give one value")
+
+
+def _refuse_beside_like(arguments: list[str]) -> None:
+    """By the words that were typed: once parsed, a default that somebody asked for is as one that nobody did."""
+    flags = {word.partition("=")[0].replace("_", "-") for word in arguments if word.startswith("--")}
+    if arguments[:1] == ["run"] and "--like" in flags and (given := sorted(flags - BESIDE_LIKE)):
+        raise ConfigError(
+            f"--like: the run is repeated as it was, so expected no other parameters, got {', '.join(given)}"
+        )
 
 
 def _parsed(arguments: list[str]) -> Callable[[], None]:

@@ -39,7 +39,8 @@ class Explain:
         params = ExplainParams.checked(vars(self.experiment))
         if not self.runs:
             raise ConfigError("expected at least one run, got none: slamgym explain RUN... --out DIR")
-        folders = [folder for path in self.runs for folder in runs_in(path)]
+        with told_warnings():
+            folders = [folder for path in self.runs for folder in runs_in(path)]
         with told_warnings(), progress_bar("{task.completed:.0f} losses") as progress:
             task = progress.add_task("reading", total=None)
             found = explain(
@@ -66,18 +67,26 @@ class Explain:
             show_table(changes_table(found))
         for sentence in summary_sentences(found):
             say(results, sentence)
-        say(results, f"a change that does nothing is given credit in at most {FALSE_ALARM:.0%} of the losses")
+        share = f"at most {FALSE_ALARM:.0%} of the losses"
+        say(results, f"a change that does nothing is given credit in {share}, if the frames are drawn independently")
         say(results, f"details, a picture and all run folders: {self.out}")
 
 
 def case_table(result: CaseResult) -> Table:
     """The controls and the changes of one loss."""
-    table = Table("change", "lost", "p", "verdict", box=SIMPLE_HEAD, padding=(0, 1), title=result.name)
-    assert result.judgement is not None
-    for kind, findings in (("control", result.judgement.controls), ("", result.judgement.changes)):
-        for one in findings:
-            table.add_row(f"{kind}: {one.name}" if kind else one.name, str(one.count), f"{one.p:.3f}", one.verdict)
-        table.add_section()
+    judgement, confirmation = result.judgement, result.confirmation
+    assert judgement is not None
+    headings = ("change", "lost", "p", "over other frames", "p", "verdict")
+    table = Table(*headings, box=SIMPLE_HEAD, padding=(0, 1), title=result.name)
+    for one in judgement.controls:
+        table.add_row(f"control: {one.name}", str(one.count), f"{one.p:.3f}", "", "", one.verdict)
+    if confirmation is not None:
+        table.add_row("control: unchanged", "", "", str(confirmation.unchanged), "", "")
+    table.add_section()
+    for one in judgement.changes:
+        again = result.confirmed(one.name)
+        other = ("", "") if again is None else (str(again.count), f"{again.p:.3f}")
+        table.add_row(one.name, str(one.count), f"{one.p:.3f}", *other, result.verdict_on(one))
     return table
 
 

@@ -11,7 +11,7 @@ from slamgym.cli.terminal import notes, printing, results, say, told_warnings, w
 from slamgym.errors import ConfigError
 from slamgym.report.comparison import compare_studies
 from slamgym.report.content import ReportContent
-from slamgym.report.page import write_report
+from slamgym.report.page import check_report_folder, write_report
 from slamgym.report.study import study_content
 from slamgym.study.results import StudyResults
 from slamgym.study.table import open_study
@@ -33,7 +33,9 @@ class Report:
     out: Annotated[
         Path | None, tyro.conf.arg(help="folder to write to; None: the study's, or compare-BASELINE in it")
     ] = None
-    fail_on_regression: Annotated[bool, tyro.conf.arg(help="exit with 1 when something became worse")] = False
+    fail_on_regression: Annotated[
+        bool, tyro.conf.arg(help="exit with 1 when something became worse, with 2 when that cannot be judged")
+    ] = False
 
     def __call__(self) -> None:
         if self.fail_on_regression and self.baseline is None:
@@ -46,23 +48,26 @@ class Report:
                 self._compare(study, _opened(self.baseline))
 
     def _report(self, study: StudyResults) -> None:
+        folder = self.out or self.study
+        check_report_folder(folder, study)
         with working("writing the report"):
             content = study_content(study)
-            page = write_report(content, study, self.out or self.study)
+            page = write_report(content, study, folder)
         with printing():
             _say(content, page)
 
     def _compare(self, study: StudyResults, baseline: StudyResults) -> None:
         folder = self.out or self.study / f"compare-{baseline.folder.resolve().name}"
+        check_report_folder(folder, study)
         with working("comparing"):
             comparison = compare_studies(study, baseline)
             page = write_report(comparison.content, study, folder)
         with printing():
             _say(comparison.content, page)
-            for regression in comparison.regressions:
-                say(results, f"regression: {regression}")
-        if self.fail_on_regression and comparison.regressions:
+        if self.fail_on_regression and comparison.has_regressed:
             sys.exit(EXIT_REGRESSION)
+        if self.fail_on_regression and comparison.not_judged:
+            raise ConfigError(f"--fail-on-regression: cannot judge: {comparison.not_judged[0]}")
 
 
 def _opened(folder: Path) -> StudyResults:
@@ -78,6 +83,6 @@ def _opened(folder: Path) -> StudyResults:
 
 
 def _say(content: ReportContent, page: Path) -> None:
-    for headline in content.headlines:
-        say(results, headline)
+    for sentence in (*content.notices, *content.headlines):
+        say(results, sentence)
     say(results, f"report: {page}")

@@ -2,15 +2,14 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import tyro
 
-from slamgym.cli.drive import DriveCommand, DriveOptions, driven
+from slamgym.cli.drive import DriveCommand, driven
 from slamgym.cli.live import RerunOption, Show, shown
 from slamgym.cli.options import option_group
 from slamgym.cli.terminal import notes, printing, results, say, show_table, told_warnings
-from slamgym.errors import ConfigError
 from slamgym.params import SlamInLoopParams
 from slamgym.report_table import episode_table, remarks
 from slamgym.rollout import Episode, EpisodeInterrupted, run_episode
@@ -42,7 +41,7 @@ class Run(DriveCommand):
             self._run(show)
 
     def _run(self, show: Show) -> None:
-        like = None if self.like is None else self._recorded(self.like)
+        like = None if self.like is None else read_recorded_run(self.like)
         try:
             with told_warnings():
                 episode = self._driven(show) if like is None else self._repeated(like, show)
@@ -75,15 +74,3 @@ class Run(DriveCommand):
                 self.out,
                 lambda env, agent, on_step: run_episode(show(env), agent, like.seed, on_step),
             )
-
-    def _recorded(self, folder: Path) -> RecordedRun:
-        given = {name for name in ("seed", "agent", "max_episode_steps") if getattr(self, name) != getattr(Run, name)}
-        given |= _changed(self.drive, DriveOptions()) | _changed(self.slam, SlamOptions())
-        if given:
-            flags = ", ".join(f"--{name.replace('_', '-')}" for name in sorted(given))
-            raise ConfigError(f"--like: the run is repeated as it was, so expected no other parameters, got {flags}")
-        return read_recorded_run(folder)
-
-
-def _changed(options: Any, defaults: Any) -> set[str]:
-    return {name for name, value in vars(options).items() if value != vars(defaults)[name]}

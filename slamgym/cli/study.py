@@ -22,7 +22,7 @@ from slamgym.study.folder import StudyFolder
 from slamgym.study.plan import plan_study, run_count
 from slamgym.study.pool import cores
 from slamgym.study.results import StudyResults
-from slamgym.study.run import run_study
+from slamgym.study.run import check_workers, run_study
 from slamgym.study.spec import StudySpec, read_study
 from slamgym.study.table import NOT_RUN
 
@@ -54,6 +54,7 @@ class Study:
     dry_run: Annotated[bool, tyro.conf.arg(help="only say what would be run, and about how long")] = False
 
     def __call__(self) -> None:
+        check_workers(self.workers, self.dask)
         with told_warnings():
             spec = read_study(self.study, self.size, self.sequences)
         if self.dry_run:

@@ -8,9 +8,11 @@ from rich.table import Table
 
 from slamgym.eval.plots.names import printable, shorten
 from slamgym.eval.robustness import average
+from slamgym.report.levels import Factor, find_factors, with_levels
 from slamgym.study.results import StudyResults
-from slamgym.study.table import NOT_RUN
+from slamgym.study.table import judged, succeeded
 from slamgym.tables import PERCENT, figures_table
+from slamgym.types import FloatArray
 
 FACTORS = 2
 LONGEST_LEVEL = 30
@@ -28,26 +30,34 @@ COLUMNS: dict[str, tuple[str, str]] = {
 
 def level_table(done: StudyResults) -> Table:
     """All runs, then those at each level of the first factors; without those that could not be run."""
-    runs = done.runs[done.runs["status"] != NOT_RUN]
+    runs = judged(done.runs)
+    factors = find_factors(runs, done.factors)[:FACTORS]
+    runs = with_levels(runs, factors)
     rows = [_row("all", runs)]
-    for factor in done.factors[:FACTORS]:
-        rows += [_row(f"{factor} {_level(level)}", at) for level, at in runs.groupby(factor, dropna=False)]
+    for factor in factors:
+        rows += [_row(_named(factor, level), runs[runs[factor.column] == level]) for level in factor.levels]
     return figures_table(COLUMNS, rows)
 
 
-def _level(level: Any) -> str:
-    return "-" if pd.isna(level) else str(level)
+def _named(factor: Factor, level: str) -> str:
+    told = factor.told(level)
+    return told if told.startswith(factor.title) else f"{factor.title} {told}"
+
+
+def _numbers(runs: pd.DataFrame, name: str) -> FloatArray:
+    """A column of results, NaN where no run has one."""
+    return runs[name].to_numpy(np.float64) if name in runs else np.full(len(runs), np.nan)
 
 
 def _row(name: str, runs: pd.DataFrame) -> dict[str, Any]:
-    success = runs["success"].astype(bool).to_numpy()
-    ate = (runs["ate_rmse_m"] if "ate_rmse_m" in runs else runs["completion"] * np.nan).to_numpy(np.float64)
+    success = succeeded(runs).to_numpy()
+    ate, completion = _numbers(runs, "ate_rmse_m"), _numbers(runs, "completion")
     statuses = runs["status"].value_counts()
     return {
         "level": shorten(printable(name), LONGEST_LEVEL),
         "runs": len(runs),
         "success": float(success.mean()) if len(runs) else np.nan,
         "ate_rmse_m": average(ate, ~success | ~np.isfinite(ate), "penalise", penalty=np.inf).value,
-        "completion": float(runs["completion"].mean()),
+        "completion": float(completion.mean()) if len(runs) else np.nan,
         "status": ", ".join(f"{count} {status}" for status, count in statuses.items()),
     }

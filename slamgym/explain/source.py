@@ -1,6 +1,7 @@
 """The run that is to be explained, as its folder tells it."""
 
 import json
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +11,7 @@ import pandas as pd
 import yaml
 
 from slamgym.agents import AGENTS, Agent, Cautious
-from slamgym.errors import ConfigError, SlamgymError
+from slamgym.errors import ConfigError, SlamgymError, TrajectoryWarning
 from slamgym.explain.changes import Setup
 from slamgym.params import DriveParams, SlamInLoopParams
 from slamgym.study.slam_work import read_planned
@@ -47,7 +48,9 @@ class DrivenRun:
 
 
 def runs_in(path: Path) -> list[Path]:
-    """The run folder itself, or the folders of a study's runs with a loss; raises ConfigError where it is neither."""
+    """The run folder itself, or the folders of a study's runs with a loss, but for those over recorded sequences, of
+    which a TrajectoryWarning tells. Raises ConfigError where it is neither, or all losses are over such sequences.
+    """
     if (path / "episode.json").is_file():
         return [path]
     if not (path / "plan.json").is_file():
@@ -55,9 +58,18 @@ def runs_in(path: Path) -> list[Path]:
     runs = open_study(path).runs
     if "loss_count" not in runs:
         return []  # none has finished yet
-    # A sequence that somebody recorded cannot be driven again.
-    lost = (runs["loss_count"].fillna(0) > 0) & runs["sequence"].isna()
-    return [path / "runs" / run_id for run_id in runs["run_id"][lost]]
+    lost = runs[runs["loss_count"].fillna(0) > 0]
+    recorded = lost["sequence"].notna()
+    if recorded.any():
+        _tell_recorded(path, int(lost["loss_count"][recorded].sum()), all_losses=bool(recorded.all()))
+    return [path / "runs" / run_id for run_id in lost["run_id"][~recorded]]
+
+
+def _tell_recorded(path: Path, losses: int, all_losses: bool) -> None:
+    if all_losses:
+        raise ConfigError(f"{path}: all {losses} losses are over recorded sequences, where {FIXED}")
+    message = f"{path}: {losses} losses are over recorded sequences, where nothing can be changed: left out"
+    warnings.warn(message, TrajectoryWarning, stacklevel=3)
 
 
 def read_run(folder: Path) -> DrivenRun:
@@ -71,8 +83,17 @@ def read_run(folder: Path) -> DrivenRun:
     except SlamgymError:
         raise
     except (OSError, ValueError, KeyError, TypeError, IndexError, AttributeError, yaml.YAMLError) as error:
-        why = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise ConfigError(f"{folder}: expected the folder of a run, got {why}; name one of `slamgym run`") from None
+        got = _damage(error)
+        raise ConfigError(f"{folder}: expected the folder of a run, got {got}; name one of `slamgym run`") from None
+
+
+def _damage(error: Exception) -> str:
+    """What is wrong with a folder, by what reading it came to."""
+    if isinstance(error, OSError):
+        return f"one whose {Path(str(error.filename)).name} cannot be read"
+    if isinstance(error, KeyError):
+        return f"a damaged one, without {error.args[0]!r}"
+    return "a damaged one, whose config.yaml, episode.json and frames.csv cannot be those of one run"
 
 
 FIXED = "nothing can be changed; explain a run of `slamgym run` or of a study's drive"
@@ -91,7 +112,7 @@ def _driven_run(folder: Path, config: Mapping[str, Any], results: Mapping[str, A
     return DrivenRun(
         folder=folder,
         setup=setup,
-        seed=run["seed"],
+        seed=int(run["seed"]),
         agent=_agent(folder, run["agent"]),
         reset_options=options,
         stretch_m=(begin_m, begin_m + results["planned_path_m"]),
@@ -117,7 +138,7 @@ def _losses(folder: Path, losses: list[Mapping[str, Any]], begin_m: float) -> tu
     return tuple(
         Loss(
             number=number,
-            start_s=loss["start_s"],
+            start_s=float(loss["start_s"]),
             progress_m=float(fed_m[loss["start_frame"]]),
             cause=(loss["context"] or {}).get("cause", "unknown"),
             explanation=(loss["context"] or {}).get("explanation", ""),

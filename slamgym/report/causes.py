@@ -9,7 +9,7 @@ from slamgym.eval.plots import plot_stacked_bars, printable
 from slamgym.report.content import DataTable, Picture, Section
 from slamgym.report.judged import JudgedRuns, numbers
 from slamgym.report.levels import Factor
-from slamgym.report.wording import listed, percent, sentence
+from slamgym.report.wording import count, listed, percent, sentence
 
 PREFIX = "loss_causes."
 WORDS = {
@@ -55,7 +55,17 @@ def causes_text(judged: JudgedRuns) -> str:
     first = [str(cause) for cause, n in counts.items() if n == most]
     if len(first) > 1:
         return f"the most frequent causes of losses are {listed(first)}: {most:,} each of {total:,}"
-    return f"the most frequent cause of losses is {first[0]}: {most:,} of {total:,} ({percent(most / total)}){aside}"
+    share = f"{most:,} of {total:,} ({percent(most / total)})"
+    return f"the most frequent cause of losses is {first[0]}: {share}{_on_paths(judged, first[0])}{aside}"
+
+
+def _on_paths(judged: JudgedRuns, cause: str) -> str:
+    """Many losses of few paths tell of these paths rather than of the cause."""
+    has_it = np.zeros(len(judged.table), dtype=np.bool_)
+    for column in (str(name) for name in judged.table.columns if str(name).startswith(PREFIX)):
+        if told(column) == cause:
+            has_it |= numbers(judged.table, column) > 0
+    return f", on {judged.table.loc[has_it, 'place'].nunique():,} of {count(judged.paths, 'path')}"
 
 
 def causes_section(judged: JudgedRuns) -> Section | None:

@@ -11,7 +11,7 @@ from statsmodels.stats.multitest import multipletests
 from slamgym.eval.plots import RankCorrelation, plot_scatter
 from slamgym.eval.statistics import correlations
 from slamgym.report.content import DataTable, Picture, Section
-from slamgym.report.judged import JudgedRuns, numbers
+from slamgym.report.judged import JudgedRuns, left_out_text, numbers, of_complete_paths
 from slamgym.report.shares import FEWEST_PATHS
 from slamgym.report.wording import sentence
 from slamgym.types import FloatArray
@@ -46,16 +46,18 @@ MOST_POINTS = 20_000
 
 def correlations_section(judged: JudgedRuns) -> Section | None:
     """Rank correlations between the paths, and within them where conditions were varied; None without enough paths."""
-    if judged.paths < FEWEST_PATHS:
+    complete = of_complete_paths(judged)
+    if complete.paths < FEWEST_PATHS:
         return None
-    attributes, metrics = _by(judged, ["place"])
+    attributes, metrics = _by(complete, ["place"])
     between = correlations(attributes, metrics)
     tables = [_between_table(between)]
     pictures = [_scatter(attributes, metrics, between)] if between["spearman"].notna().any() else []
-    within = _within_paths(judged)
+    within = _within_paths(complete)
     if len(within):
         tables.append(_within_table(within))
-    sentences = tuple(map(sentence, [*_told_between(between), *_told_within(within)]))
+    left_out = [text] if (text := left_out_text(judged)) else []
+    sentences = tuple(map(sentence, [*_told_between(between), *_told_within(within), *left_out]))
     return Section("correlations", "What goes with errors and failures?", sentences, tuple(tables), tuple(pictures))
 
 

@@ -5,11 +5,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import yaml
 
 from slamgym.eval.plots import printable
-from slamgym.report.judged import FAILED, JudgedRuns, numbers, texts
-from slamgym.report.levels import level_name, title_and_unit
+from slamgym.report.judged import FAILED, JudgedRuns, numbers, shared_houses, texts
+from slamgym.report.levels import SI_UNITS, level_name, title_and_unit
 from slamgym.report.wording import count, listed, number
+from slamgym.study.folder import StudyFolder
 from slamgym.study.results import StudyResults
 from slamgym.study.table import NOT_RUN
 from slamgym.types import FloatArray
@@ -24,10 +26,11 @@ def study_facts(results: StudyResults, judged: JudgedRuns) -> dict[str, Any]:
     facts = {
         "Runs": _runs_text(results),
         "Not run": "; ".join(_reasons(runs)),
-        "Paths": _paths_text(table),
+        "Paths": _paths_text(judged),
         **{f"Varied: {_label(name)}": _levels_text(runs[name]) for name in results.factors if name in runs},
+        "Fixed": _fixed_text(results),
         "Repeats": _range_text(numbers(runs, "repeat")),
-        "Driven": _driven_text(table),
+        "Shown to the SLAM": _driven_text(table),
         "Round trips": _round_trips_text(table),
         "SLAM": listed(_distinct(table, "slam")),
         "Versions": ", ".join(_versions(table)),
@@ -52,14 +55,17 @@ def _reasons(runs: pd.DataFrame) -> Iterator[str]:
         yield f"{count(others, 'run')}: other reasons"
 
 
-def _paths_text(table: pd.DataFrame) -> str:
+def _paths_text(judged: JudgedRuns) -> str:
+    table = judged.table
     if not len(table):
         return ""
     by_dataset = table.groupby("dataset", sort=False)["place"].nunique()
     total = count(int(by_dataset.sum()), "path")
+    inside = f" in {count(houses, 'house')}" if (houses := shared_houses(judged)) else ""
     if len(by_dataset) == 1:
-        return f"{total} of {printable(str(by_dataset.index[0]))}"
-    return f"{total}: {listed([f'{n:,} of {printable(str(name))}' for name, n in by_dataset.items()])}"
+        return f"{total} of {printable(str(by_dataset.index[0]))}{inside}"
+    of_each = listed([f"{n:,} of {printable(str(name))}" for name, n in by_dataset.items()])
+    return f"{total}: {of_each}{inside}"
 
 
 def _label(name: str) -> str:
@@ -71,6 +77,20 @@ def _levels_text(column: "pd.Series[Any]") -> str:
     levels = list(dict.fromkeys(level_name(value) for value in column.drop_duplicates().astype(object)))
     more = f" and {len(levels) - MOST_LEVELS} more" if len(levels) > MOST_LEVELS else ""
     return ", ".join(levels[:MOST_LEVELS]) + more
+
+
+def _fixed_text(results: StudyResults) -> str:
+    """What the study file fixes for all runs; nothing where there is no file."""
+    try:
+        fixed = yaml.safe_load((StudyFolder(results.folder).study).read_text(encoding="utf-8"))["fixed"]
+    except (OSError, ValueError, LookupError, TypeError, yaml.YAMLError):
+        return ""
+    return ", ".join(_with_unit(name, value) for name, value in fixed.items())
+
+
+def _with_unit(name: str, value: Any) -> str:
+    title, unit = title_and_unit(name)
+    return f"{title} {level_name(value)}{f' {unit}' if unit in SI_UNITS else ''}"
 
 
 def _range_text(repeats: FloatArray) -> str:
@@ -105,12 +125,15 @@ def driven(table: pd.DataFrame) -> tuple[FloatArray, FloatArray]:
 
 def _round_trips_text(table: pd.DataFrame) -> str:
     """How many drives come back to their start, and in how many runs a loop was seen to close there."""
-    back = table[texts(table, "run.reset_options.tour").eq("round_trip") | texts(table, "agent").eq("patrol")]
+    tours, agents = texts(table, "run.reset_options.tour"), texts(table, "agent")
+    back = table[tours.isin(("round_trip", "lap")) | agents.isin(("patrol", "lap"))]
     if not len(back):
         return ""
     drives = back["drive_id"].nunique() if "drive_id" in back else back["place"].nunique()
-    closed = int((numbers(back, "loops_closed") > 0).sum())
-    return f"{count(drives, 'drive')} back to the start; loops seen to close in {closed:,} of {len(back):,} runs"
+    able = back[texts(back, "loop_closure") != "False"]
+    closed = int((numbers(able, "loops_closed") > 0).sum())
+    loops = f"; with loop closing on, a loop was seen to close in {closed:,} of {count(len(able), 'run')}"
+    return f"{count(drives, 'drive')} back to the start{loops if len(able) else ''}"
 
 
 def _distinct(table: pd.DataFrame, column: str) -> list[str]:

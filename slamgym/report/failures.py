@@ -1,6 +1,7 @@
 """When do runs fail? Curves over each numeric factor, and heat maps over each two of them."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import combinations
 from typing import Any
@@ -9,38 +10,49 @@ import numpy as np
 import pandas as pd
 
 from slamgym.eval.plots import FailureCounts, plot_failure_curve, plot_failure_curves, plot_heat_map
+from slamgym.eval.statistics import Interval
 from slamgym.report.content import DataTable, Picture, Section
-from slamgym.report.judged import JudgedRuns
+from slamgym.report.judged import JudgedRuns, left_out_text, of_complete_paths
 from slamgym.report.levels import Factor
-from slamgym.report.shares import FEWEST_PATHS, Trend, failure_trend
-from slamgym.report.wording import number, number_range, percent, sentence
+from slamgym.report.shares import FEWEST_PATHS, Trend, compare_levels, failure_trend
+from slamgym.report.wording import confidence, number, number_range, percent, sentence
 from slamgym.types import IntArray
 
 FEWEST_LEVELS = 3
 MOST_SERIES = 5
 MOST_PICTURES = 6
+_UNKNOWN = Interval(np.nan, np.nan, np.nan)
 
 
 def trends(judged: JudgedRuns) -> list[Trend]:
-    """The curve of failures over each numeric factor of three levels or more."""
-    return [failure_trend(judged, factor) for factor in judged.factors if _has_curve(factor)]
+    """The curve of failures over each numeric factor of three levels or more, of the paths with all conditions."""
+    complete = of_complete_paths(judged)
+    found = [failure_trend(complete, factor) for factor in judged.factors if _has_curve(complete, factor)]
+    return [trend if trend.changes else replace(trend, levels_differ=_levels_differ(judged, trend)) for trend in found]
 
 
-def _has_curve(factor: Factor) -> bool:
-    return factor.is_numeric and len(factor.levels) >= FEWEST_LEVELS
+def _has_curve(judged: JudgedRuns, factor: Factor) -> bool:
+    return factor.is_numeric and judged.table[factor.column].nunique() >= FEWEST_LEVELS
+
+
+def _levels_differ(judged: JudgedRuns, trend: Trend) -> bool:
+    return any(one.differs and one.paths >= FEWEST_PATHS for one in compare_levels(judged, trend.factor))
 
 
 def failures_section(judged: JudgedRuns, seen: Sequence[Trend]) -> Section:
     """Curves, curves by the level of another factor, heat maps, and a table of where half of the runs fail."""
-    by_level = list(_trends_by_level(judged))
+    complete = of_complete_paths(judged)
+    by_level = list(_trends_by_level(complete))
     rows = [_midpoint_row(trend, "all levels") for trend in seen]
     rows += [_midpoint_row(trend, other.told(level)) for other, level, trend in by_level]
     tables = (_midpoints(rows),) if rows else ()
-    pictures = [*(_curve(judged, trend) for trend in seen), *_curves(judged, by_level), *_heat_maps(judged)]
+    pictures = [*(_curve(complete, trend) for trend in seen), *_curves(complete, by_level), *_heat_maps(complete)]
+    told = [trend_text(trend, len(judged.factors) > 1) for trend in seen]
+    left_out = left_out_text(judged) if tables or pictures else ""
     return Section(
         "failures",
         "When do runs fail?",
-        sentences=tuple(sentence(trend_text(trend, len(judged.factors) > 1)) for trend in seen),
+        sentences=tuple(sentence(text) for text in (*told, left_out) if text),
         tables=tables,
         pictures=tuple(pictures),
     )
@@ -48,26 +60,37 @@ def failures_section(judged: JudgedRuns, seen: Sequence[Trend]) -> Section:
 
 def trend_text(trend: Trend, others: bool) -> str:
     """What the runs say of failures over the factor; others: whether there are more factors."""
-    factor, curve = trend.factor, trend.curve
-    first, last = factor.told(factor.levels[0]), factor.told(factor.levels[-1])
-    ends = f"{percent(trend.share_low)} at {first}, {percent(trend.share_high)} at {last}"
+    factor, title, middle = trend.factor, trend.factor.title, trend.midpoint
+    every = {level: f"{percent(share)} at {factor.told(level)}" for level, share in trend.share_at.items()}
+    ends = f"{every[trend.levels[0]]}, {every[trend.levels[-1]]}"
+    shown = ", ".join(text for level, text in every.items() if level in factor.shown)
     together = ", all levels of the other factors together" if others else ""
     if trend.paths < FEWEST_PATHS:
-        return f"too few paths ({trend.paths}) to tell a trend with the {factor.title}: {ends}{together}"
+        return f"too few paths ({trend.paths}) to tell a trend with the {title}: {ends}{together}"
+    if trend.changes and not trend.fits:
+        return f"failures do not simply rise or fall with the {title}: {shown}{together}"
+    if trend.levels_differ:
+        return f"failures differ between levels of the {title}, but do not surely rise or fall: {shown}{together}"
     if not trend.is_seen:
-        return f"failures show no certain trend with the {factor.title}: {ends}{together}"
-    if not trend.midpoint_is_inside:
-        word = "rise" if trend.rising else "fall"
-        return f"failures {word} with the {factor.title}: {ends}{together}; half of the runs would fail beyond them"
-    side = "above" if trend.rising else "below"
-    where = factor.told(number(curve.midpoint.estimate))
-    interval = f"{100 * curve.midpoint.confidence:g} % interval {number_range(curve.midpoint)}"
-    return f"half of the runs fail {side} {where} ({interval}){together}: {ends}"
+        return f"failures show no certain trend with the {title}: {ends}{together}"
+    if not trend.midpoint_is_known:
+        return f"failures {'rise' if trend.rising else 'fall'} with the {title}: {ends}{together}{_half_text(trend)}"
+    side, where = "above" if trend.rising else "below", factor.told(number(middle.estimate))
+    return f"half of the runs fail {side} {where} ({confidence(middle)} {number_range(middle)}){together}: {ends}"
+
+
+def _half_text(trend: Trend) -> str:
+    """What is known of where half of the runs fail without a guess beyond the levels that were tried."""
+    if max(trend.share_at.values()) < 0.5:
+        return "; fewer than half fail at every level tried"
+    if min(trend.share_at.values()) > 0.5:
+        return "; more than half fail at every level tried"
+    return "; the paths are too few to tell where half of the runs fail"
 
 
 def _trends_by_level(judged: JudgedRuns) -> Iterator[tuple[Factor, str, Trend]]:
     """The curve over each numeric factor at each level of each factor of few levels."""
-    for factor in filter(_has_curve, judged.factors):
+    for factor in (factor for factor in judged.factors if _has_curve(judged, factor)):
         for other in judged.factors:
             if other is not factor and len(other.levels) <= MOST_SERIES:
                 for level, runs in judged.table.groupby(other.column, observed=True):
@@ -75,16 +98,15 @@ def _trends_by_level(judged: JudgedRuns) -> Iterator[tuple[Factor, str, Trend]]:
 
 
 def _midpoint_row(trend: Trend, of: str) -> dict[str, Any]:
-    middle = trend.curve.midpoint
-    known = middle if trend.is_seen else None
+    known = trend.midpoint if trend.midpoint_is_known else _UNKNOWN
     return {
         "factor": trend.factor.label,
         "runs at": of,
         "runs": trend.curve.runs,
         "failed": trend.curve.failures,
-        "half fail at": known.estimate if known else np.nan,
-        "95 % from": known.low if known else np.nan,
-        "95 % to": known.high if known else np.nan,
+        "half fail at": known.estimate,
+        "95 % from": known.low,
+        "95 % to": known.high,
     }
 
 
@@ -93,8 +115,8 @@ def _midpoints(rows: list[dict[str, Any]]) -> DataTable:
         name="midpoints",
         title="Where half of the runs fail",
         caption="From a logistic curve over the factor, in the factor's unit; the interval takes into account that "
-        "runs of one path fail together. A dash: the runs show no certain trend. A value outside of the levels that "
-        "were tried is a guess.",
+        "runs of one path fail together. A dash: the runs show no certain trend, or the value lies beyond the levels "
+        "that were tried.",
         frame=pd.DataFrame(rows),
         formats={"half fail at": "{:.3g}", "95 % from": "{:.3g}", "95 % to": "{:.3g}"},
     )
@@ -108,16 +130,13 @@ def _counts(table: pd.DataFrame, factor: Factor) -> tuple[IntArray, IntArray]:
 
 def _curve(judged: JudgedRuns, trend: Trend) -> Picture:
     factor = trend.factor
-    failed, runs = _counts(judged.table, factor)
     return Picture(
         name=_name("failure_curve", factor),
         title=f"Failures over the {factor.title}",
         caption="Points: the share of runs that failed at each level, with the interval that independent runs would "
         "have. Line: the curve fitted to them. Where it crosses 50 %, half of the runs fail; the band is the interval "
         "of that point, for paths like these.",
-        draw=partial(
-            plot_failure_curve, factor.values, failed, runs, trend.curve if trend.is_seen else None, factor=factor.label
-        ),
+        draw=partial(plot_failure_curve, *_series(judged.table, trend), factor=factor.label),
     )
 
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from slamgym.report.levels import Factor, find_factors, with_levels
+from slamgym.report.levels import Factor, find_factors, tied_names, with_columns, with_levels
+from slamgym.report.wording import count
 from slamgym.study.results import StudyResults
 from slamgym.study.table import NOT_RUN
 from slamgym.types import FloatArray
@@ -40,12 +41,53 @@ class JudgedRuns:
         return int(self.table["place"].nunique())
 
 
+def of_complete_paths(judged: JudgedRuns) -> JudgedRuns:
+    """Its runs on the paths that have all conditions that any path has: on these alone can levels be compared.
+
+    While a study runs, hard paths may have been driven at other levels than easy ones, which looks like a trend. Where
+    no path has them all, those with the most conditions that the same paths have.
+    """
+    cells = judged.cells
+    if not judged.factors or not len(cells):
+        return judged
+    conditions = cells.groupby(judged.columns, observed=True).ngroup()
+    of_path = conditions.groupby(cells["place"]).agg(frozenset)
+    common = of_path.value_counts()
+    if len(common) == 1:
+        return judged
+    most = max(common.index, key=lambda among: (len(among), common[among]))
+    places = of_path.index[[among == most for among in of_path]]
+    table, kept = judged.table, cells[cells["place"].isin(places)]
+    return JudgedRuns(table[table["place"].isin(places)], kept, judged.factors)
+
+
+def left_out_text(judged: JudgedRuns) -> str:
+    """How many paths are not among those of `of_complete_paths`, in words; "" where all are."""
+    missing = judged.paths - of_complete_paths(judged).paths
+    if not missing:
+        return ""
+    lack = "lacks" if missing == 1 else "lack"
+    return (
+        f"{missing:,} of {count(judged.paths, 'path')} {lack} runs under some conditions; trends, the table at a "
+        "glance and correlations leave out such paths"
+    )
+
+
+def shared_houses(judged: JudgedRuns) -> int:
+    """In how many houses the paths are, where several are in one, which tell less of other houses; else 0."""
+    scenes = texts(judged.table, "scene")
+    houses = int(scenes.nunique())
+    return 0 if scenes.eq("").any() or houses >= judged.paths else houses
+
+
 def judged_runs(results: StudyResults) -> JudgedRuns:
     """All runs of the study that were not `not_run`."""
-    runs = results.runs.reset_index(drop=True)
-    if "status" in runs:
-        runs = runs[runs["status"] != NOT_RUN]
-    factors = find_factors(runs, results.factors)
+    planned = results.runs.reset_index(drop=True)
+    runs = planned[planned["status"] != NOT_RUN] if "status" in planned else planned
+    # Of an unfinished study the rows may happen to change two factors together that the others will tell apart.
+    is_finished = len(planned) >= results.planned
+    tied = tied_names(planned, results.factors) if is_finished else [[name] for name in results.factors]
+    factors = find_factors(runs, results.factors, tied)
     table = with_levels(_with_outcome(runs), factors)
     return JudgedRuns(table, _cells(table, factors), factors)
 
@@ -71,10 +113,8 @@ def _with_outcome(runs: pd.DataFrame) -> pd.DataFrame:
     # Two datasets may well have sequences of one name.
     alike = len(set(zip(dataset, path, strict=True))) > path.nunique()
     place = dataset + ": " + path if alike else path
-    return runs.assign(
-        failed=failed, error_m=np.where(failed, np.inf, ate), place=place, dataset=dataset, path=path,
-        **{name: numbers(runs, name) for name in _MEDIANS},
-    )  # fmt: skip
+    columns = {"failed": failed, "error_m": np.where(failed, np.inf, ate), "place": place, "dataset": dataset}
+    return with_columns(runs, columns | {"path": path} | {name: numbers(runs, name) for name in _MEDIANS})
 
 
 def _cells(table: pd.DataFrame, factors: tuple[Factor, ...]) -> pd.DataFrame:

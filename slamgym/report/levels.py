@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -107,11 +107,24 @@ def level_name(value: Any) -> str:
     return printable(value if isinstance(value, str) else json.dumps(value, default=str))
 
 
-def find_factors(table: pd.DataFrame, names: Sequence[str]) -> tuple[Factor, ...]:
-    """The factors that have two levels or more in the table; those whose levels always change together are one."""
+def find_factors(
+    table: pd.DataFrame, names: Sequence[str], tied: Sequence[Sequence[str]] | None = None
+) -> tuple[Factor, ...]:
+    """The factors that have two levels or more in the table; those whose levels always change together are one.
+
+    tied: the groups of names that do, as other rows tell; those of `tied_names` of the table unless given.
+    """
+    groups = tied_names(table, names) if tied is None else tied
     coded = {name: _coded(table[name]) for name in names if name in table}
     varied = {name: codes for name, (codes, levels) in coded.items() if len(levels) > 1}
-    return tuple(_factor(group, varied, coded) for group in _tied(varied))
+    kept = ([name for name in group if name in varied] for group in groups)
+    return tuple(_factor(group, varied, coded) for group in kept if group)
+
+
+def tied_names(table: pd.DataFrame, names: Sequence[str]) -> list[list[str]]:
+    """Groups of the names that are varied in the table: in one group, the level of one always tells that of another."""
+    codes = {name: _coded(table[name])[0] for name in names if name in table and len(table)}
+    return _tied({name: levels for name, levels in codes.items() if levels.max() > 0})
 
 
 def with_levels(table: pd.DataFrame, factors: Iterable[Factor]) -> pd.DataFrame:
@@ -120,7 +133,13 @@ def with_levels(table: pd.DataFrame, factors: Iterable[Factor]) -> pd.DataFrame:
     for factor in factors:
         codes = _joint_codes([_coded(table[name])[0] for name in factor.names])[0]
         columns[factor.column] = pd.Categorical.from_codes(codes, pd.Index(factor.levels), ordered=True)
-    return table.assign(**columns)
+    return with_columns(table, columns)
+
+
+def with_columns(table: pd.DataFrame, columns: Mapping[str, Any]) -> pd.DataFrame:
+    """The table with these columns, new or instead of its own, at once: one by one is slow where there are many."""
+    kept = table.drop(columns=[name for name in columns if name in table])
+    return pd.concat([kept, pd.DataFrame(dict(columns), index=table.index)], axis=1)
 
 
 def _coded(column: "pd.Series[Any]") -> tuple[IntArray, list[Any]]:

@@ -10,7 +10,7 @@ from slamgym.eval.robustness import average
 from slamgym.eval.statistics import Interval, clustered_share
 from slamgym.report.content import DataTable, Section
 from slamgym.report.facts import driven
-from slamgym.report.judged import JudgedRuns, numbers
+from slamgym.report.judged import JudgedRuns, numbers, of_complete_paths
 from slamgym.types import BoolArray, FloatArray
 
 FAILED_LAST = "median ATE, failed last (m)"
@@ -32,18 +32,24 @@ MOST_ROWS = 300
 def overview_section(judged: JudgedRuns) -> Section:
     """One table: all runs, then each level of each factor."""
     rows = [{"factor": "all runs", "level": "", **figures(judged.table)}]
+    complete = of_complete_paths(judged)
     for factor in judged.factors:
-        groups = judged.table.groupby(factor.column, observed=True)
+        groups = complete.table.groupby(factor.column, observed=True)
         rows += [{"factor": factor.label, "level": str(level), **figures(group)} for level, group in groups]
     table = DataTable(
         name="overview",
         title="All runs, and the levels of each factor",
         caption="Each level over all levels of the other factors. The interval of the failed share takes into account "
-        f"that runs of one path fail together. {POLICY}",
+        f"that runs of one path fail together. {POLICY}{_left_out(judged, complete)}",
         frame=pd.DataFrame(rows[:MOST_ROWS]),
         formats=FORMATS,
     )
     return Section("overview", "At a glance", tables=(table,))
+
+
+def _left_out(judged: JudgedRuns, complete: JudgedRuns) -> str:
+    kept, paths = complete.paths, judged.paths
+    return f" Levels are of the {kept:,} of {paths:,} paths with runs under all conditions." if kept < paths else ""
 
 
 def paths_section(judged: JudgedRuns) -> Section:

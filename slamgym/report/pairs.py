@@ -11,7 +11,7 @@ from slamgym.report.content import DataTable, Picture, Section
 from slamgym.report.judged import JudgedRuns
 from slamgym.report.levels import Factor
 from slamgym.report.shares import FEWEST_PATHS, LevelComparison, compare_levels
-from slamgym.report.wording import percent, percent_range, ratio_range, sentence
+from slamgym.report.wording import confidence, listed, percent, percent_range, ratio_range, sentence
 
 MOST_LINES = 20_000
 
@@ -38,11 +38,15 @@ def difference_text(one: LevelComparison) -> str:
     if one.paths < FEWEST_PATHS:
         return f"{counts}: too few paths ({one.paths}) to tell whether that would hold for others"
     size = percent(one.difference.estimate).removesuffix(" %")
-    interval = f"difference {size} percentage points, 95 % interval {percent_range(one.difference).removesuffix(' %')}"
+    ends = percent_range(one.difference).removesuffix(" %")
+    interval = f"difference {size} percentage points, {confidence(one.difference)} {ends}"
+    over = ", over all levels of the other factors" if one.others else ""
+    but = f"; it depends on the {listed(one.depends_on)}" if one.depends_on else ""
     if not one.differs:
-        return f"{counts}: no difference seen ({interval})"
+        chance = f"no difference seen that could not be chance with {one.paths:,} paths"
+        return f"{counts}{over}: {chance} ({interval}){but}"
     word = "more" if one.difference.estimate > 0 else "fewer"
-    return f"{word} failures {level}: {counts} ({interval})"
+    return f"{word} failures {level}: {counts}{over} ({interval}){but}"
 
 
 def counts_text(one: LevelComparison) -> str:
@@ -55,11 +59,12 @@ def ratio_text(one: LevelComparison) -> str:
     """How the ATE of the successful runs differs between the two levels, in words."""
     level, base = one.factor.at(one.level), one.factor.at(one.base)
     where = f"on the {one.both_paths} paths where both succeeded"
-    ratio, interval = f"{one.ratio.estimate:.2f}", f"95 % interval {ratio_range(one.ratio)}"
+    ratio, interval = f"{one.ratio.estimate:.2f}", f"{confidence(one.ratio)} {ratio_range(one.ratio)}"
     if one.both_paths < FEWEST_PATHS:
         return f"too few paths where runs {level} and {base} both succeeded ({one.both_paths}) to compare their ATE"
     if not one.ratio_differs:
-        return f"no difference seen in the ATE {level} and {base}, {where} (ratio {ratio}, {interval})"
+        seen = "no difference seen that could not be chance in the ATE"
+        return f"{seen} {level} and {base}, {where} (ratio {ratio}, {interval})"
     return f"the ATE {level} is {ratio} times that {base}, {where} ({interval})"
 
 

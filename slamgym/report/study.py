@@ -8,7 +8,7 @@ from slamgym.report.content import ReportContent, Section
 from slamgym.report.correlations import correlations_section
 from slamgym.report.facts import study_facts
 from slamgym.report.failures import failures_section, trends
-from slamgym.report.headlines import headlines
+from slamgym.report.headlines import headlines, notices
 from slamgym.report.judged import judged_runs
 from slamgym.report.overview import overview_section, paths_section
 from slamgym.report.pairs import comparisons, pairs_section
@@ -37,7 +37,8 @@ def study_content(results: StudyResults) -> ReportContent:
         title=printable(results.name),
         description=results.description,
         facts=study_facts(results, judged),
-        headlines=headlines(results, judged, seen, compared, threshold),
+        headlines=headlines(judged, seen, compared, threshold),
+        notices=notices(results, judged),
         sections=tuple(section for section in sections if section is not None and _has_content(section)),
     )
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from slamgym.eval.plots.names import percent as percent  # of pictures, too: all of a report round alike
 from slamgym.eval.statistics import Interval
 
 
@@ -20,15 +21,6 @@ def number(value: float) -> str:
     return f"{rounded:.{decimals}f}"
 
 
-def percent(share: float) -> str:
-    """A share, 0 to 1, in whole percent; with one digit below 1 %, and neither 0 nor 100 % for what is not quite."""
-    if math.isnan(share):
-        return "-"
-    size = abs(100 * share)
-    digits = 1 if 0 < size < 0.95 or 99.5 <= size < 100 else 0
-    return f"{max(min(size, 99.9), 0.1) * (1 if share > 0 else -1):.1f} %" if digits else f"{100 * share + 0.0:.0f} %"
-
-
 def percent_range(interval: Interval) -> str:
     """The ends of an interval of shares: "12 to 40 %"."""
     low, high = (round(100 * end) + 0 for end in (interval.low, interval.high))
@@ -41,10 +33,17 @@ def ratio_range(interval: Interval) -> str:
 
 
 def number_range(interval: Interval) -> str:
-    """The ends of an interval: "0.8 to 1.1"; "0.8 or more" where one is open."""
+    """The ends of an interval: "0.8 to 1.1"; "0.8 or more" or "1.1 or less" where one is open."""
+    if math.isinf(interval.low):
+        return f"{number(interval.high)} or less"
     if math.isinf(interval.high):
         return f"{number(interval.low)} or more"
     return f"{number(interval.low)} to {number(interval.high)}"
+
+
+def confidence(interval: Interval) -> str:
+    """What the interval holds with: "95 % interval", "98.3 % interval" for one of three that hold together."""
+    return f"{100 * interval.confidence:.3g} % interval"
 
 
 def count(n: int, noun: str) -> str:

@@ -31,8 +31,18 @@ class Costs:
 
     def limit_s(self, work: Work) -> float:
         """Time after which it will never end."""
-        own_s = 0.0 if isinstance(work, PlannedDrive) else 2 * SlamParams.checked(work.slam).slam_finish_timeout_s
-        return SLOWER_THAN_THOUGHT * self.of(work) + ALLOWANCE_S + own_s
+        allowed_s = 0.0 if isinstance(work, PlannedDrive) else _allowed_s(work)
+        return SLOWER_THAN_THOUGHT * self.of(work) + ALLOWANCE_S + allowed_s
+
+
+def _allowed_s(run: PlannedRun) -> float:
+    """What the SLAM may take by its own limits, which find one that hangs: to load and to end, and for each frame."""
+    params = SlamParams.checked(run.slam)
+    try:
+        frames_fed = estimate([run]).frames_fed
+    except SequenceError:
+        frames_fed = 0
+    return 2 * params.slam_finish_timeout_s + frames_fed * params.slam_timeout_s
 
 
 def _estimated(runs: list[PlannedRun]) -> tuple[float, float]:

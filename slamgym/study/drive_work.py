@@ -1,13 +1,16 @@
 """The first unit of a study's work: a drive that is rendered once, kept with what the results of its SLAM runs need.
 
-drive.json   the planned drive, its config, and the drive's part of the results
+drive.json   the planned drive, hashes of what it is made of, its config, and the drive's part of the results
 drive.npz    motion at every frame, planned path, occupancy grid
 views.jpg    some views, in the order of the drive
 frames/      the frames, in the layout of TUM RGB-D; of a sequence that somebody recorded nothing is copied
 """
 
+import hashlib
 import json
 import shutil
+import zipfile
+import zlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -21,10 +24,12 @@ from slamgym.errors import ConfigError, SceneError, SequenceError, unknown_word
 from slamgym.eval.datasets import Sequence, read_sequence
 from slamgym.eval.plots.contact_sheet import Image, contact_sheet, jpg
 from slamgym.eval.summary import without_nan
-from slamgym.files import check_free, draft
+from slamgym.files import check_free, draft, short_hash
 from slamgym.recording import record_drive
 from slamgym.rollout import Episode, Step
+from slamgym.scenes.fingerprint import array_sha256
 from slamgym.scenes.occupancy import OccupancyGrid
+from slamgym.study.canonical import canonical
 from slamgym.study.planned import PlannedDrive
 
 FRAMES = "frames"
@@ -62,7 +67,7 @@ def record_planned_drive(drive: PlannedDrive, folder: Path) -> None:
             sequence = read_sequence(place / FRAMES)
         else:
             episode, sequence = None, read_sequence(Path(drive.sequence))
-        _write_facts(place, drive, episode)
+        _write_facts(place, drive, sequence, episode)
         (place / "views.jpg").write_bytes(jpg(_views(sequence)))
 
 
@@ -72,7 +77,7 @@ def read_facts(folder: Path) -> DriveFacts:
         told = json.loads((folder / "drive.json").read_text())
         planned = PlannedDrive(**told["drive"])
         return DriveFacts(planned, None if planned.sequence else _read_episode(folder, told))
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile, zlib.error) as error:
         why = f"{type(error).__name__}: {error}".splitlines()[0]
         raise SequenceError(f"{folder}: expected a drive that a study recorded, got {why}; record it anew") from None
 
@@ -88,16 +93,27 @@ def load_drive(folder: Path) -> RecordedDrive:
 
 
 def keep_facts(folder: Path, kept: Path) -> None:
-    """Copy all but the frames of a drive's folder to a new folder, in one piece; where it is already, nothing happens.
+    """Copy all but the frames of a drive's folder to a new folder, in one piece; where it is already, nothing happens,
+    unless it cannot be read: then it is replaced.
 
     Raises OutputError.
     """
-    if not kept.exists():
-        with draft(kept) as place:
-            place.mkdir()
-            for name in FACTS:
-                if (folder / name).exists():
-                    shutil.copy(folder / name, place)
+    if is_drive(kept):
+        return
+    shutil.rmtree(kept, ignore_errors=True)
+    with draft(kept) as place:
+        place.mkdir()
+        for name in FACTS:
+            if (folder / name).exists():
+                shutil.copy(folder / name, place)
+
+
+def is_drive(folder: Path) -> bool:
+    """Whether the facts of a drive can be read there."""
+    try:
+        return bool(read_facts(folder))
+    except SequenceError:
+        return False
 
 
 def _driven(drive: PlannedDrive, frames: Path) -> Episode:
@@ -115,8 +131,28 @@ def _driven(drive: PlannedDrive, frames: Path) -> Episode:
         env.close()
 
 
-def _write_facts(folder: Path, drive: PlannedDrive, episode: Episode | None) -> None:
-    told: dict[str, Any] = {"drive": asdict(drive)}
+def _made_of(drive: PlannedDrive, sequence: Sequence, episode: Episode | None) -> dict[str, str]:
+    """Hashes of what the frames come from, by what a person calls it: the scene as it was loaded, a given map, or of a
+    recorded sequence when its frames were taken and where.
+    """
+    if episode is None:
+        parts = sequence.stamps_ns, sequence.T_world_cam
+        digest = hashlib.sha256(b"".join(map(array_sha256, parts)) + repr(sequence.camera).encode())
+        return {str(drive.sequence): short_hash(digest.hexdigest())}
+    versions = episode.config["run"]["versions"]
+    scene = " ".join([str(episode.config["scene"]), *_words(drive.params.get("scene_options", {}))])
+    made_of = {scene: versions["house_sha256"]}
+    if "occupancy_map_sha256" in versions:
+        made_of[f"{episode.config['occupancy_map']} for {scene}"] = versions["occupancy_map_sha256"]
+    return made_of
+
+
+def _words(options: Mapping[str, Any]) -> list[str]:
+    return [f"{name}={canonical(value)}" for name, value in sorted(options.items())]
+
+
+def _write_facts(folder: Path, drive: PlannedDrive, sequence: Sequence, episode: Episode | None) -> None:
+    told: dict[str, Any] = {"drive": asdict(drive), "made_of": _made_of(drive, sequence, episode)}
     if episode is not None:
         told |= {"config": episode.config, "summary": without_nan(episode.summary)}
         columns = zip(*episode.steps, strict=True)

@@ -7,6 +7,7 @@ from math import ceil
 from pathlib import Path
 
 from slamgym import MAX_EPISODE_STEPS
+from slamgym.agents import AGENTS
 from slamgym.camera import PinholeCamera
 from slamgym.env import BLUR_SAMPLES
 from slamgym.eval.datasets import read_sequence
@@ -101,10 +102,16 @@ def _frames(drive: PlannedDrive) -> _Frames:
         sequence = read_sequence(Path(drive.sequence))
         return _Frames(len(sequence), len(sequence) / sequence.fps, _size(sequence.camera))
     params = DriveParams.checked(drive.params)
-    length_m = params.path_length_m * (ROUND_TRIP if drive.agent == "patrol" else 1.0)
+    length_m = params.path_length_m * _tour_length(drive.agent)
     duration_s = length_m / min(params.speed, SWIFTEST_MPS, METRES_A_RADIAN * params.top_turn_rate)
     count = min(ceil(duration_s * params.fps) + 1, drive.max_episode_steps or MAX_EPISODE_STEPS)
     return _Frames(count, count / params.fps, _size(params.camera))
+
+
+def _tour_length(agent: str) -> float:
+    """How many times as long as asked for its tour is."""
+    tour = getattr(AGENTS[agent], "reset_options", {}).get("tour", "one_way")
+    return 1.0 if tour == "one_way" else ROUND_TRIP
 
 
 def _size(camera: PinholeCamera) -> float:

@@ -6,13 +6,15 @@ from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass
 
-from slamgym.errors import OutputError, SlamError
+from slamgym.errors import ConfigError, OutputError, SequenceError, SlamError
 from slamgym.study.costs import Costs
+from slamgym.study.drive_work import keep_facts
 from slamgym.study.folder import StudyFolder
 from slamgym.study.growing_table import GrowingTable
 from slamgym.study.planned import PlannedDrive, PlannedRun
 from slamgym.study.pool import SCHEDULER_GONE, Pool
 from slamgym.study.schedule import Schedule, Work, name_of
+from slamgym.study.sources import Sources
 from slamgym.study.table import not_run_row, run_row
 from slamgym.study.work import Outcome, carry_out, write_crashed
 
@@ -60,11 +62,17 @@ class Execution:
         self._costs = Costs(todo)
         self._seconds_left = sum(map(self._costs.of, todo)) + sum(map(self._costs.of, drives.values()))
         self._seconds_done = 0.0
+        self._sources = Sources(folder.path / "drives")
         self._begin, self._done_before = time.monotonic(), len(table.done)
 
-    def run(self, interrupted: Callable[[], bool]) -> None:
+    def run(self, interrupted: Callable[[], bool], in_place: Callable[[], bool]) -> None:
+        """in_place: whether the folder is still where the workers write. Raises OutputError where it is not, or cannot
+        be written, SlamError when the cluster is gone, KeyboardInterrupt.
+        """
         self._tell()
         while self._runs_left:
+            if not in_place():
+                raise OutputError(f"{self._folder.path} was moved or removed; start the study again where it is now")
             self._begin_more()
             if not self._under_way:  # all workers of the cluster are gone; others may come
                 time.sleep(LOOK_S)
@@ -109,19 +117,33 @@ class Execution:
         if isinstance(work, PlannedDrive):
             return Outcome(failure=failure)
         out = self._folder.run(work.run_id)
-        if not out.exists():  # it may have died just after it was done
-            write_crashed(work, out, failure)
-        return Outcome(row=run_row(out))
+        try:
+            if not out.exists():  # it may have died just after it was done
+                write_crashed(work, self._folder.frames(work.drive.drive_id), out, failure)
+            return Outcome(row=run_row(out))
+        except (ConfigError, SequenceError, SlamError) as error:
+            return Outcome(failure=str(error))
 
     def _drive_done(self, drive: PlannedDrive, outcome: Outcome) -> None:
         self._count(drive)
         if not outcome.failure:
-            self._schedule.rendered(drive)
+            self._take_in(drive)
             return
         for run in self._schedule.cannot_render(drive):
             self._count(run)
             self._runs_left -= 1
             self._table.add(not_run_row(run, f"the drive could not be rendered: {outcome.failure}"))
+
+    def _take_in(self, drive: PlannedDrive) -> None:
+        """A drive has its facts when its frames are known to be of the same scene as all before."""
+        frames = self._folder.frames(drive.drive_id)
+        try:
+            self._sources.check(frames)
+        except OutputError:
+            self._folder.drop_frames(drive.drive_id)
+            raise
+        keep_facts(frames, self._folder.drive(drive.drive_id))
+        self._schedule.rendered(drive)
 
     def _run_done(self, run: PlannedRun, outcome: Outcome) -> None:
         self._count(run)

@@ -7,6 +7,7 @@ drives/DRIVE_ID  what is kept of each drive: facts and views
 frames/DRIVE_ID  a drive with its frames, as long as runs need them
 runs.parquet     the table of all runs, see `slamgym.study.table`
 study.lock       locked by the process that runs the study: its id, host, and since when
+damaged/         what could not be read when the study was started again, as after a power cut
 """
 
 import fcntl
@@ -14,11 +15,11 @@ import json
 import os
 import shutil
 import socket
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from datetime import datetime
-from itertools import chain
+from itertools import chain, count
 from pathlib import Path
 
 from slamgym.errors import ConfigError, OutputError
@@ -67,7 +68,11 @@ class StudyFolder:
         return self.path / "frames" / drive_id
 
     def finished_runs(self) -> set[str]:
-        """Ids of the runs that have their folder."""
+        """Ids of the runs that have their folder, with results in it."""
+        runs = self.path / "runs"
+        return {run_id for run_id in self._run_folders() if _has_content(f"{runs}/{run_id}/episode.json")}
+
+    def _run_folders(self) -> set[str]:
         runs = self.path / "runs"
         return {f"{drive_id}/{run}" for drive_id in _folders(runs) for run in _folders(runs / drive_id)}
 
@@ -87,6 +92,22 @@ class StudyFolder:
         own = [self.path.glob(f".{file.name}-*") for file in (self.study, self.plan, self.table)]
         for drafted in chain(*own, *(place.glob(".*-*") for place in places if place.is_dir())):
             shutil.rmtree(drafted, ignore_errors=True)
+
+    def set_damaged_aside(self) -> None:
+        """What is in the way of runs and of the table and is none; only for who holds the lock. Raises OutputError."""
+        for run_id in self._run_folders() - self.finished_runs():
+            self.set_aside(self.run(run_id))
+        if self.table.is_dir():
+            self.set_aside(self.table)
+
+    def set_aside(self, damaged: Path) -> None:
+        """Move something of the study to where nothing looks for it; raises OutputError."""
+        place = self.path / "damaged" / damaged.relative_to(self.path)
+        try:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            damaged.rename(next(free for free in _numbered(place) if not free.exists()))
+        except OSError as error:
+            raise OutputError(f"cannot set {damaged} aside: {error.strerror}; remove it") from None
 
     def end_frames(self) -> None:
         """Nobody needs frames any more."""
@@ -110,9 +131,22 @@ def _folders(folder: Path) -> list[str]:
         return [entry.name for entry in entries if not entry.name.startswith(".") and entry.is_dir()]
 
 
+def _has_content(path: str) -> bool:
+    """Quick for very many."""
+    try:
+        return os.stat(path).st_size > 0  # noqa: PTH116
+    except OSError:
+        return False
+
+
+def _numbered(path: Path) -> Iterator[Path]:
+    """The path, then others of like names."""
+    return chain([path], (path.with_name(f"{path.name}.{k}") for k in count(2)))
+
+
 @contextmanager
-def locked(folder: StudyFolder) -> Iterator[None]:
-    """A study's folder, made where there is none, for this process alone.
+def locked(folder: StudyFolder) -> Iterator[Callable[[], bool]]:
+    """A study's folder, made where there is none, for this process alone; tells whether it is still in its place.
 
     Raises OutputError when another process has it, when it holds something else, or cannot be written.
     """
@@ -136,7 +170,15 @@ def locked(folder: StudyFolder) -> Iterator[None]:
         since = datetime.now().astimezone().isoformat(" ", "seconds")
         file.write(f"process {os.getpid()} on {socket.gethostname()} since {since}\n")
         file.flush()
-        yield
+        own = os.fstat(file.fileno())
+
+        def in_place() -> bool:
+            try:
+                return os.path.samestat(folder.lock.stat(), own)
+            except OSError:
+                return False
+
+        yield in_place
 
 
 def _check_a_studys(folder: StudyFolder) -> None:
@@ -144,8 +186,16 @@ def _check_a_studys(folder: StudyFolder) -> None:
         there = {entry.name for entry in folder.path.iterdir()} if folder.path.exists() else set()
     except OSError as error:
         raise OutputError(f"{folder.path}: expected a folder, got {error.strerror}; name another") from None
-    if there and folder.lock.name not in there:
+    if there and folder.lock.name not in there and not _has_plan(folder):
         raise OutputError(f"{folder.path}: expected a new or empty folder, or that of this study; name another")
+
+
+def _has_plan(folder: StudyFolder) -> bool:
+    """As the copy of a study's folder without its lock. Not by study.yaml, which may be the user's own file."""
+    try:
+        return bool(read_plan(folder))
+    except ConfigError:
+        return False
 
 
 def read_plan(folder: StudyFolder) -> Plan:
@@ -166,10 +216,12 @@ def write_plan(folder: StudyFolder, plan: Plan) -> None:
 
 
 def check_grown(folder: StudyFolder, plan: Plan) -> None:
-    """Raise OutputError when there is a plan already, and runs of it are not in this one."""
-    if not folder.plan.exists():
+    """Raise OutputError when there is a plan already, one that can be read, and runs of it are not in this one."""
+    try:
+        before = read_plan(folder)
+    except ConfigError:
         return
-    before, planned = read_plan(folder), set(plan.run_ids)
+    planned = set(plan.run_ids)
     if gone := [run_id for run_id in before.run_ids if run_id not in planned]:
         raise OutputError(
             f"{folder.path}: expected the study {before.name!r} that was begun there, or one that has all of its runs; "

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import product
+from math import prod
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,6 +18,9 @@ from slamgym.study.spec import PathGroup, StudySpec, factor_names
 from slamgym.study.yaml_file import Place
 
 Levels = Mapping[str, Any]
+
+MAX_RUNS = 1_000_000
+"""Of a study: their ids and rows fit into memory, and they take a cluster months."""
 
 
 class _Combinations(NamedTuple):
@@ -51,6 +55,7 @@ def plan_study(spec: StudySpec) -> tuple[PlannedRun, ...]:
     Every combination of parameters is checked, every scene looked up and every sequence's folder. Raises ConfigError,
     with the line of the study file that is to blame.
     """
+    _check_size(spec)
     known: dict[Any, _SlamRun] = {}
     paths: dict[str, str] = {}
     runs: list[PlannedRun] = []
@@ -66,7 +71,7 @@ def plan_study(spec: StudySpec) -> tuple[PlannedRun, ...]:
 def run_count(spec: StudySpec) -> int:
     """How many runs the study has, without a look at scenes and sequences."""
     paths = sum(len(group.scene) * len(group.seeds) + len(group.sequence) for group in spec.paths)
-    return paths * spec.repeats * sum(len(combined.slam) for combined in _combinations(spec))
+    return paths * spec.repeats * prod(len(next(iter(entry.values()))) for entry in spec.factors)
 
 
 def _combinations(spec: StudySpec) -> list[_Combinations]:
@@ -157,6 +162,12 @@ def _slam_run(spec: StudySpec, drive: _Drive, levels: Levels) -> _SlamRun:
     slug = slug_of(setting.params.slam, {name: level for name, level in understood.items() if name != "slam"})
     name = name_for_folder(slug, setting.depends_on)
     return _SlamRun(name, keywords(setting), understood, setting.conditions.busy_processes)
+
+
+def _check_size(spec: StudySpec) -> None:
+    if (count := run_count(spec)) > MAX_RUNS:
+        place = "repeats" if spec.repeats > 1 else "factors"
+        raise spec.error(f"expected at most {MAX_RUNS:,} runs, got {count:,}; make several studies of it", place)
 
 
 def _check_path(spec: StudySpec, drive: PlannedDrive, paths: dict[str, str], place: Place) -> None:

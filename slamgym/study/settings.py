@@ -53,7 +53,11 @@ def drive_setting(scene: str, values: Values) -> DriveSetting:
     """Parameters and conditions of a drive, by dotted names, in one scene. Raises ConfigError and SceneError."""
     conditions, rest = _split(DriveConditions, values)
     if conditions.agent in AGENTS.keys() - set(STUDY_AGENTS):
-        raise ConfigError(f"agent: expected one that drives without a SLAM, got {conditions.agent!r}")
+        valid = ", ".join(STUDY_AGENTS)
+        raise ConfigError(
+            f"agent: expected one that drives without a SLAM, one of {valid}, got {conditions.agent!r}; a study "
+            "renders each drive once for all SLAMs"
+        )
     if conditions.agent not in STUDY_AGENTS:
         raise ConfigError(unknown_word("agent", conditions.agent, STUDY_AGENTS))
     params = DriveParams.checked({"scene": scene, **rest})

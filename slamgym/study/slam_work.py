@@ -1,9 +1,11 @@
 """The second unit of a study's work: one SLAM run over the frames of a drive."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, replace
+from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 from slamgym.errors import ConfigError
 from slamgym.eval.datasets import Sequence
@@ -12,7 +14,7 @@ from slamgym.replay import Replay, replay
 from slamgym.rollout import Episode
 from slamgym.run_folder import write_run
 from slamgym.study.busy import busy
-from slamgym.study.drive_work import load_drive
+from slamgym.study.drive_work import RecordedDrive, load_drive
 from slamgym.study.loss_views import write_loss_views
 from slamgym.study.planned import PlannedDrive, PlannedRun
 from slamgym.types import SlamRecord, Summary
@@ -34,10 +36,8 @@ def run_planned(run: PlannedRun, drive_folder: Path, out: Path) -> Summary:
     """
     drive = load_drive(drive_folder)
     episode = drive.facts.episode
-    # With the reward, which only a drive has, and which is recorded beside the rest.
-    params = (SlamParams if episode is None else SlamInLoopParams).checked(run.slam)
     with busy(run.busy_processes):
-        done = replay(drive.sequence, params)
+        done = replay(drive.sequence, _params(run, episode))
     result = done if episode is None else as_driven(done, episode)
     write_run(result, out, _also(run, drive.sequence, done.slam))
     return result.summary
@@ -45,19 +45,40 @@ def run_planned(run: PlannedRun, drive_folder: Path, out: Path) -> Summary:
 
 def as_driven(done: Replay, drive: Episode) -> Episode:
     """What a live episode would have been: the drive with the SLAM that its frames were replayed through."""
-    config = {name: value for name, value in done.config.items() if name in SlamInLoopParams.model_fields}
-    versions = {**drive.config["run"]["versions"], **done.config["run"]["versions"]}
     return replace(
         drive,
-        config={
-            **drive.config,
-            "run": {**drive.config["run"], "env_id": SLAM_ENV_ID, "versions": versions},
-            **config,
-        },
+        config=_as_driven_config(done.config, done.config["run"]["versions"], drive),
         slam=done.slam,
         slam_log=done.slam_log,
         summary=_as_driven_summary(done.summary, drive.summary),
     )
+
+
+def config_of(run: PlannedRun, drive: RecordedDrive) -> dict[str, Any]:
+    """What `config.yaml` of the run says, without running it. Raises ConfigError and SlamError for the SLAM."""
+    sequence, episode = drive.sequence, drive.facts.episode
+    params = _params(run, episode)
+    recorded = params.recorded(params.config(sequence.camera, sequence.fps))
+    versions = {"slamgym": version("slamgym"), **recorded.pop("slam_versions")}
+    if episode is not None:
+        return _as_driven_config(recorded, versions, episode)
+    made = {"run": {"sequence": sequence.name, "versions": versions}}
+    return {**made, "camera": asdict(sequence.camera), "fps": sequence.fps, **recorded}
+
+
+def _params(run: PlannedRun, episode: Episode | None) -> SlamParams:
+    """With the reward, which only a drive has, and which is recorded beside the rest."""
+    return (SlamParams if episode is None else SlamInLoopParams).checked(run.slam)
+
+
+def _as_driven_config(slam: Mapping[str, Any], versions: Mapping[str, str], drive: Episode) -> dict[str, Any]:
+    """slam, versions: parameters of the SLAM, and what its results depend on."""
+    run = drive.config["run"]
+    return {
+        **drive.config,
+        "run": {**run, "env_id": SLAM_ENV_ID, "versions": {**run["versions"], **versions}},
+        **{name: value for name, value in slam.items() if name in SlamInLoopParams.model_fields},
+    }
 
 
 def write_planned(run_folder: Path, run: PlannedRun) -> None:

@@ -39,6 +39,7 @@ def _listed(values: Any) -> Any:
 Texts = Annotated[tuple[Annotated[str, Field(min_length=1)], ...], Field(min_length=1), BeforeValidator(_listed)]
 Seeds = Annotated[tuple[Annotated[int, Field(ge=0, strict=True)], ...], Field(min_length=1), BeforeValidator(_listed)]
 Count = Annotated[int, Field(ge=1, strict=True)]
+MAX_REPEATS = 10_000
 
 
 class PathGroup(Params):
@@ -69,7 +70,7 @@ class StudySpec(Params):
     paths: tuple[PathGroup, ...] = ()
     fixed: dict[str, Any] = Field(default_factory=dict)
     factors: tuple[dict[str, tuple[Any, ...]], ...] = ()
-    repeats: Count = 1
+    repeats: Annotated[Count, Field(le=MAX_REPEATS)] = 1
     max_workers: Count | None = None
 
     _file: YamlFile | None = PrivateAttr(None)

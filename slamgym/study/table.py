@@ -7,7 +7,8 @@ SLAM not be started: no failure of the SLAM, so `success` is empty.
 """
 
 import json
-from collections.abc import Iterable, Mapping
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from typing import Any
 import pandas as pd
 import yaml
 
-from slamgym.errors import ConfigError
+from slamgym.errors import ConfigError, TrajectoryWarning
 from slamgym.files import draft
 from slamgym.study.folder import Plan, StudyFolder, read_plan
 from slamgym.study.planned import PlannedRun
@@ -29,7 +30,10 @@ Row = dict[str, Any]
 
 
 def open_study(path: Path) -> StudyResults:
-    """The results of a study so far, also while it runs; raises ConfigError where there is no study."""
+    """The results of a study so far, also while it runs; raises ConfigError where there is no study.
+
+    A run whose folder is damaged is left out, with a TrajectoryWarning.
+    """
     folder = StudyFolder(Path(path))
     plan = read_plan(folder)
     return StudyResults(
@@ -42,25 +46,51 @@ def open_study(path: Path) -> StudyResults:
     )
 
 
-def current_table(folder: StudyFolder, plan: Plan) -> pd.DataFrame:
-    """The table on the disk, and the runs that were finished since it was written."""
+def succeeded(runs: pd.DataFrame) -> "pd.Series[bool]":
+    """Of each run whether it is a success; one that could not be run is none."""
+    return runs["success"].eq(True) if "success" in runs else pd.Series(False, runs.index)
+
+
+def judged(runs: pd.DataFrame) -> pd.DataFrame:
+    """The runs that say something of their SLAM: those that could be run."""
+    return runs[runs["status"] != NOT_RUN]
+
+
+def _left_out(_: str, error: ConfigError) -> None:
+    warnings.warn(f"{error}; it is left out", TrajectoryWarning, stacklevel=2)
+
+
+def current_table(
+    folder: StudyFolder, plan: Plan, on_damaged: Callable[[str, ConfigError], None] = _left_out
+) -> pd.DataFrame:
+    """The table on the disk, and the runs that were finished since it was written.
+
+    on_damaged: called with the id of each of these whose folder cannot be read, and why; it has no row.
+    """
     table = read_table(folder.table)
-    known = set(table["run_id"][table["status"] != NOT_RUN])
-    new = sorted((folder.finished_runs() - known).intersection(plan.run_ids))
-    return joined(table, (run_row(folder.run(run_id)) for run_id in new), plan)
+    new = sorted((folder.finished_runs() - set(judged(table)["run_id"])).intersection(plan.run_ids))
+    return joined(table, _rows(folder, new, on_damaged), plan)
+
+
+def _rows(folder: StudyFolder, run_ids: Iterable[str], on_damaged: Callable[[str, ConfigError], None]) -> Iterator[Row]:
+    for run_id in run_ids:
+        try:
+            yield run_row(folder.run(run_id))
+        except ConfigError as error:
+            on_damaged(run_id, error)
 
 
 def read_table(path: Path) -> pd.DataFrame:
-    """The table on the disk, one without rows where there is none; raises ConfigError where it cannot be read."""
-    if not path.exists():
-        return pd.DataFrame(columns=[*IDENTITY, "status"])
+    """The table on the disk; one without rows where there is none that can be read.
+
+    All but its runs that could not be run can be made anew from the run folders.
+    """
+    none = pd.DataFrame(columns=[*IDENTITY, "status"])
     try:
-        return pd.read_parquet(path)
-    except (OSError, ValueError) as error:
-        why = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise ConfigError(
-            f"{path}: expected a table ({why}); remove it, it is made anew from the run folders"
-        ) from None
+        table = pd.read_parquet(path) if path.is_file() else none
+    except Exception:  # a damaged file may fail in any way
+        return none
+    return table if {"run_id", "status"} <= set(table) else none
 
 
 def write_table(path: Path, table: pd.DataFrame) -> None:
@@ -90,13 +120,18 @@ def run_row(folder: Path) -> Row:
         config = yaml.load((folder / "config.yaml").read_text(), yaml.CSafeLoader)
         results = json.loads((folder / "episode.json").read_text())
     except (OSError, ValueError, yaml.YAMLError) as error:
-        why = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise ConfigError(
-            f"{folder}: expected the folder of a finished run ({why}); remove it to run it again"
-        ) from None
+        raise _damaged(folder, f"{type(error).__name__}: {error}".splitlines()[0]) from None
+    if not isinstance(config, dict):
+        raise _damaged(folder, f"config.yaml is {config!r:.40}")
+    if not isinstance(results, dict) or "status" not in results:
+        raise _damaged(folder, f"episode.json is {results!r:.40}")
     if run is None:
         raise ConfigError(f"{folder}: expected a run of a study, got a folder without its plan; move it elsewhere")
     return _row(run, config, results)
+
+
+def _damaged(folder: Path, why: str) -> ConfigError:
+    return ConfigError(f"{folder}: expected the folder of a finished run ({why}); start the study again to repeat it")
 
 
 def not_run_row(run: PlannedRun, failure: str) -> Row:

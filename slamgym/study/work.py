@@ -6,7 +6,6 @@ import signal
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,11 +13,11 @@ import yaml
 
 from slamgym.errors import OutputError, SlamgymError
 from slamgym.files import draft
-from slamgym.study.drive_work import keep_facts, record_planned_drive
+from slamgym.study.drive_work import load_drive, record_planned_drive
 from slamgym.study.folder import StudyFolder
 from slamgym.study.planned import PlannedDrive, PlannedRun
 from slamgym.study.schedule import Work
-from slamgym.study.slam_work import run_planned
+from slamgym.study.slam_work import config_of, run_planned, write_planned
 from slamgym.study.table import run_row
 
 CRASHED = {
@@ -65,7 +64,6 @@ def _record(drive: PlannedDrive, folder: StudyFolder) -> Outcome:
     frames = folder.frames(drive.drive_id)
     if not frames.exists():
         record_planned_drive(drive, frames)
-    keep_facts(frames, folder.drive(drive.drive_id))
     return Outcome()
 
 
@@ -80,14 +78,18 @@ def _run(run: PlannedRun, folder: StudyFolder) -> Outcome:
     return Outcome(row=run_row(out))
 
 
-def write_crashed(run: PlannedRun, out: Path, failure: str) -> None:
-    """The folder of a run that ended its worker whenever it was tried; raises OutputError."""
-    config = {"run": {"seed": run.drive.seed}, **run.drive.params, **run.slam}
+def write_crashed(run: PlannedRun, drive_folder: Path, out: Path, failure: str) -> None:
+    """The folder of a run that ended its worker whenever it was tried, as far as it is known, so that it can be
+    repeated.
+
+    Raises what `run_planned` raises.
+    """
+    config = json.loads(json.dumps(config_of(run, load_drive(drive_folder)), default=str))
     with draft(out) as place:
         place.mkdir()
-        (place / "config.yaml").write_text(yaml.safe_dump(json.loads(json.dumps(config, default=str))))
+        (place / "config.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
         (place / "episode.json").write_text(json.dumps({**CRASHED, "failure": failure}, indent=2) + "\n")
-        (place / "planned.json").write_text(json.dumps(asdict(run), default=str) + "\n")
+        write_planned(place, run)
 
 
 @contextmanager

@@ -106,7 +106,9 @@ def test_a_small_house_has_paths_too():
 
 def test_a_lap_too_short_to_close_a_loop_is_refused(flat):
     assert plan(flat(0), 6.0, tour="lap").length_m >= 6.0
-    with pytest.raises(ConfigError, match=r"^path_length_m: a lap needs at least 6 m, .* got 5\.9 m; ask for") as short:
+    with pytest.raises(
+        ConfigError, match=r"^path_length_m: expected at least 6 m for a lap, .* got 5\.9 m; ask for"
+    ) as short:
         plan(flat(0), 5.9, tour="lap")
     assert "\n" not in str(short.value)
 

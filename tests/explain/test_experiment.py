@@ -36,17 +36,17 @@ def test_the_right_change_is_found_and_the_controls_are_unchanged(dizzy_result):
     assert [one.name for one in result.cures] == ["half the turn rate", "half the speed"]
     assert result.verdict == "explained"
     assert (
-        "vanishes with half the turn rate (0 of 2) or with half the speed (0 of 2); unchanged 6 of 6"
-        in result.sentence()
+        "vanishes with half the turn rate (0 of 2, over other frames 0 of 3) or with half the speed "
+        "(0 of 2, over other frames 0 of 3); unchanged 6 of 6, over other frames 3 of 3" in result.sentence()
     )
 
 
 def test_each_repeat_leaves_a_run_folder_and_no_frames_stay(dizzy_result):
     folder, result = dizzy_result
     changes = {one.name.replace(" ", "_") for one in result.judgement.changes}
-    assert {place.name for place in folder.iterdir()} == {*CONTROLS, *changes, "first_look"}
-    for place in folder.iterdir():
-        assert {repeat.name for repeat in place.iterdir()} == {"1", "2"}
+    assert {place.name for place in folder.iterdir()} == {*CONTROLS, *changes, "first_look", "other_frames"}
+    for name in (*CONTROLS, *changes, "first_look"):
+        assert {repeat.name for repeat in (folder / name).iterdir()} == {"1", "2"}
     config = yaml.safe_load((folder / "half_the_turn_rate" / "2" / "config.yaml").read_text())
     # Half of what its bend asked for, below its top rate of 2 rad/s.
     assert 0.6 < config["turn_rate"] < 0.85
@@ -55,6 +55,23 @@ def test_each_repeat_leaves_a_run_folder_and_no_frames_stay(dizzy_result):
     moved = yaml.safe_load((folder / "another_start" / "1" / "config.yaml").read_text())
     begin_m, end_m = result.case.stretch_m
     assert moved["run"]["reset_options"]["stretch_m"] == pytest.approx([begin_m - 0.1, end_m])
+
+
+def test_what_is_credited_is_confirmed_from_starts_of_its_own(dizzy_result):
+    folder, result = dizzy_result
+    begin_m, end_m = result.case.stretch_m
+    other = folder / "other_frames"
+    assert {place.name for place in other.iterdir()} == {"unchanged", "half_the_turn_rate", "half_the_speed"}
+    stretches = [
+        yaml.safe_load((run / "config.yaml").read_text())["run"]["reset_options"]["stretch_m"]
+        for run in other.glob("*/*")
+    ]
+    assert len({start_m for start_m, _ in stretches}) == 9
+    assert all(begin_m - 0.3 <= start_m < begin_m and last_m == end_m for start_m, last_m in stretches)
+    assert [(one.name, one.count) for one in result.confirmation.changes] == [
+        ("half the turn rate", Count(0, 3)),
+        ("half the speed", Count(0, 3)),
+    ]
 
 
 def test_a_repeat_can_be_explained_itself(dizzy_result):
@@ -70,7 +87,9 @@ def test_data_holds_what_was_found(dizzy_result):
     assert told["verdict"] == "explained"
     assert told["losses"][0]["number"] == 1
     assert told["first_looks"] == [{"stretch_m": list(result.case.stretch_m), "lost": 2, "repeats": 2}]
-    assert {one["name"]: one["verdict"] for one in told["changes"]}["half the turn rate"] == "vanishes"
+    (slower,) = [one for one in told["changes"] if one["name"] == "half the turn rate"]
+    assert (slower["verdict"], slower["over_other_frames"]["lost"]) == ("vanishes", 0)
+    assert told["unchanged_over_other_frames"] == {"lost": 3, "repeats": 3}
     assert [one["p"] for one in told["controls"]] == [1.0] * 3
 
 

@@ -5,7 +5,7 @@ import pytest
 import yaml
 
 from slamgym.agents import Cautious, LookAround, PathFollower
-from slamgym.errors import ConfigError
+from slamgym.errors import ConfigError, TrajectoryWarning
 from slamgym.explain.source import read_run, runs_in
 from slamgym.study.drive_work import FRAMES, record_planned_drive
 from slamgym.study.folder import Plan, StudyFolder, write_plan
@@ -55,7 +55,8 @@ def changed_copy(folder, target, **run):
     [
         ({"sequence": "fr1_xyz"}, "over a recorded sequence, where nothing can be changed"),
         ({"agent": f"{Cautious.__module__}:Cautious"}, "agent of follower, .*patrol, .* got .*Cautious"),
-        ({"reset_options": 3}, "expected the folder of a run, got TypeError"),
+        ({"reset_options": 3}, "expected the folder of a run, got a damaged one, whose config.yaml"),
+        ({"seed": None}, "expected the folder of a run, got a damaged one, whose config.yaml"),
     ],
 )
 def test_runs_that_cannot_be_driven_again(run, message, dizzy_run, tmp_path):
@@ -64,10 +65,31 @@ def test_runs_that_cannot_be_driven_again(run, message, dizzy_run, tmp_path):
     assert len(str(refused.value).splitlines()) == 1
 
 
+@pytest.mark.parametrize("name", ["reset_options", "seed", "agent", "versions"])
+def test_a_run_folder_that_lacks_something(name, dizzy_run, tmp_path):
+    folder = changed_copy(dizzy_run, tmp_path / "run")
+    config = yaml.safe_load((folder / "config.yaml").read_text())
+    del config["run"][name]
+    (folder / "config.yaml").write_text(yaml.safe_dump(config))
+    with pytest.raises(ConfigError) as refused:
+        read_run(folder)
+    expected = f"{folder}: expected the folder of a run, got a damaged one, without '{name}'; name one of `slamgym run`"
+    assert str(refused.value) == expected
+
+
+def test_losses_of_a_part_are_at_the_metres_of_the_whole_path(dizzy_run, tmp_path):
+    whole = read_run(dizzy_run)
+    part = read_run(changed_copy(dizzy_run, tmp_path / "run", reset_options={"stretch_m": [2.5, 8.5]}))
+    assert part.stretch_m == pytest.approx((2.5, 8.5))
+    assert len(part.losses) == len(whole.losses) > 0
+    for there, here in zip(whole.losses, part.losses, strict=True):
+        assert here.progress_m == pytest.approx(there.progress_m + 2.5)
+
+
 def test_what_is_no_run_is_refused(tmp_path):
     with pytest.raises(ConfigError, match="expected the folder of a run or of a study, got neither"):
         runs_in(tmp_path)
-    with pytest.raises(ConfigError, match=r"expected the folder of a run, got FileNotFoundError"):
+    with pytest.raises(ConfigError, match=r"expected the folder of a run, got one whose config.yaml cannot be read"):
         read_run(tmp_path)
 
 
@@ -90,7 +112,13 @@ def test_of_a_study_the_runs_with_a_loss_that_can_be_driven_again(hall, tmp_path
         record_planned_drive(one, study.frames(one.drive_id))
     results = [run_planned(run, study.frames(run.drive.drive_id), study.run(run.run_id)) for run in runs]
     assert [result["loss_count"] > 0 for result in results] == [True, False, True]
-    assert runs_in(tmp_path) == [study.run("hall-0/dizzy")]
+    on_sequence = results[2]["loss_count"]
+    with pytest.warns(TrajectoryWarning, match=f"{on_sequence} losses are over recorded sequences.*: left out"):
+        assert runs_in(tmp_path) == [study.run("hall-0/dizzy")]
+    shutil.rmtree(study.run("hall-0/dizzy"))
+    with pytest.raises(ConfigError, match=f"all {on_sequence} losses are over recorded sequences, where nothing"):
+        runs_in(tmp_path)
+    run_planned(runs[0], study.frames("hall-0"), study.run("hall-0/dizzy"))
     run = read_run(study.run("hall-0/dizzy"))
     assert (run.setup.busy_processes, run.agent, len(run.losses)) == (1, PathFollower, results[0]["loss_count"])
     with pytest.raises(ConfigError, match="over a recorded sequence"):

@@ -4,7 +4,18 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from slamgym.explain.verdict import FALSE_ALARM, Count, false_alarm, fisher_p, judge, pooled, strictest_p
+from slamgym.explain.verdict import (
+    FALSE_ALARM,
+    Count,
+    can_confirm,
+    confirm,
+    draws_needed,
+    false_alarm,
+    fisher_p,
+    judge,
+    pooled,
+    strictest_p,
+)
 
 CONTROLS = ("unchanged", "unchanged again", "another start")
 
@@ -108,3 +119,52 @@ def test_false_claims_in_simulated_experiments(repeats):
         changed = rng.binomial(repeats, q, (runs, 7))
         p = stats.hypergeom.cdf(changed, 4 * repeats, control + changed, repeats)
         assert (p <= limit + 1e-9).any(axis=1).mean() < FALSE_ALARM + 0.005
+
+
+@pytest.mark.parametrize(("changes", "draws"), [(1, 3), (3, 3), (4, 4), (10, 4)])
+def test_draws_that_keep_the_promise(changes, draws):
+    assert draws_needed(changes) == draws
+    # All lost without the change and none with it, at the worst probability of the loss.
+    q = np.linspace(0.0, 1.0, 10_001)
+    chance = [(q**n * (1 - (1 - (1 - q) ** n) ** changes)).max() for n in (draws - 1, draws)]
+    assert chance[1] <= FALSE_ALARM
+    assert chance[0] > FALSE_ALARM or strictest_p(draws - 1, draws - 1, changes) == 0.0
+
+
+def test_only_what_holds_over_other_frames_is_confirmed():
+    found = confirm(Count(3, 3), {"slower": Count(0, 3), "brighter": Count(1, 3)})
+    assert [one.verdict for one in found.changes] == ["vanishes", "unchanged"]
+    assert can_confirm(Count(3, 3), 2)
+    assert not can_confirm(Count(2, 3), 2)
+
+
+@pytest.mark.parametrize("per_frames", [0.0, 1.0])
+def test_false_claims_where_the_loss_hangs_on_the_frames(per_frames):
+    """Experiments with 5 changes that do nothing, in each of which a set of frames has a chance of the loss of its own.
+
+    per_frames: 1.0 where the frames decide all, 0.0 where the SLAM does.
+    """
+    rng = np.random.default_rng(0)
+    first = told = judged = 0
+    for _ in range(1500):
+        q = rng.choice([0.5, 0.6, 0.7, 0.8])
+
+        def lost(q=q):
+            """Of 3 runs over one set of frames."""
+            return Count(int(rng.binomial(3, rng.random() < q if rng.random() < per_frames else q)), 3)
+
+        same = lost() if per_frames == 0.0 else Count(3, 3)
+        judgement = judge(
+            {"unchanged": same, "again": lost() if per_frames == 0.0 else same, "start": lost()},
+            {str(change): lost() for change in range(5)},
+        )
+        judged += judgement.controls_agree
+        if names := judgement.credited:
+            first += 1
+            draws = draws_needed(len(names))
+            anew = {name: Count(int(rng.binomial(draws, q)), draws) for name in ("unchanged", *names)}
+            unchanged = anew.pop("unchanged")
+            told += any(one.verdict != "unchanged" for one in confirm(unchanged, anew).changes)
+    assert told / judged < FALSE_ALARM
+    if per_frames:
+        assert first / judged > 0.3  # what the confirmation is for

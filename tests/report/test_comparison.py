@@ -4,23 +4,16 @@ import pytest
 
 from slamgym.errors import ConfigError
 from slamgym.eval.plots.style import save_figure
+from slamgym.eval.statistics import Interval
 from slamgym.report.comparison import compare_studies
-from slamgym.report.comparison.differences import metric_changes, outcome_counts
+from slamgym.report.comparison.broken import regressed_pairs
+from slamgym.report.comparison.differences import MetricChange, metric_changes, outcome_counts
+from slamgym.report.comparison.metrics import SUCCESS
 from slamgym.report.comparison.pairing import pair_studies
 from tests.report.made_up import runs, study
+from tests.report.made_up_pairs import compared, pairs_of, repeated, table
 
 NAN = np.nan
-
-
-def table(rows, **columns):
-    """rows: (path, speed, repeat, success, ATE); the other columns are the same for all."""
-    frame = pd.DataFrame(rows, columns=["path", "speed", "repeat", "success", "ate_rmse_m"])
-    frame["status"] = np.where(frame["success"], "ok", "lost")
-    return frame.assign(dataset="procedural", completion=1.0, slam="orbslam3", **columns)
-
-
-def pairs_of(new, baseline, factors=("speed",)):
-    return pair_studies(study(new, factors), study(baseline, factors, folder="old"))
 
 
 def changes_of(new, baseline, factors=("speed",)):
@@ -115,24 +108,6 @@ def test_too_few_paths_are_told(paths, told):
     assert bool(comparison.regressions) != told
 
 
-def test_what_differs_is_told_first():
-    old = runs(seed=2).assign(
-        **{"slam": "orbslam2", "loop_closure": None, "run.versions.pyorbslam3": "0.1.0", "scene": "procedural:1"}
-    )
-    new = runs(seed=1).assign(loop_closure=False, scene="procedural:2", path_length_m=8.0)
-    comparison = compare_studies(study(new, ("speed",)), study(old, ("speed",), folder="old"))
-    assert [str(change) for change in comparison.settings] == [
-        "slam: orbslam2 -> orbslam3",
-        "loop_closure: default -> off",
-        "path_length_m: not told -> 8",
-        "versions.pyorbslam3: 0.1.0 -> 0.1.1",
-    ]
-    assert next(iter(comparison.content.facts.items())) == ("Changed: slam", "orbslam2 → orbslam3")
-    assert any(
-        "the drives are not the same in both (path_length_m)" in text.lower() for text in comparison.content.headlines
-    )
-
-
 def test_what_has_no_partner_is_counted():
     old = runs(paths=10, speeds=(0.2, 0.8, 1.2), seed=1)
     new = runs(paths=12, seed=2)
@@ -185,12 +160,36 @@ def test_studies_with_nothing_in_common_are_refused_in_one_line():
     assert "\n" not in str(none.value)
 
 
-def test_paths_that_broke_are_named():
-    old = table([("a", 0.2, r, True, 0.02) for r in (1, 2, 3)] + [("b", 0.2, r, r > 1, 0.02) for r in (1, 2, 3)])
-    new = table([(path, 0.2, r, r > 2, 0.02) for path in ("a", "b") for r in (1, 2, 3)])
-    comparison = compare_studies(study(new, ("speed",)), study(old, ("speed",)))
-    assert comparison.broken == ("a (speed 0.2)",)
-    assert any("fail now in 1 pair: a (speed 0.2)" in text for text in comparison.content.headlines)
+def test_the_interval_weighs_paths_as_the_estimate_does():
+    # 11 paths became worse; one, which has more pairs than all others together, became better.
+    spec = [("p0", level, 10) for level in range(1, 200)] + [(f"p{k}", 1, 0) for k in range(1, 12)]
+    new = [("p0", level, 0) for level in range(1, 200)] + [(f"p{k}", 1, 6) for k in range(1, 12)]
+    change = changes_of(repeated(new), repeated(spec))["success"]
+    assert change.change.estimate == pytest.approx((1 - 11 * 0.6) / 12)
+    assert change.change.low < change.change.estimate < change.change.high
+    assert change.verdict == "worse"
+
+
+@pytest.mark.parametrize(
+    ("estimate", "low", "high", "verdict"),
+    [
+        (-0.2, -0.3, -0.1, "worse"),
+        (0.2, 0.1, 0.3, "better"),
+        (-0.2, 0.1, 0.3, "not clear"),
+        (-0.2, -0.3, 0.1, "not clear"),
+    ],
+)
+def test_the_verdict_wants_estimate_and_interval_on_one_side(estimate, low, high, verdict):
+    assert MetricChange(SUCCESS, 20, 0.5, 0.7, Interval(estimate, low, high), 0.001).verdict == verdict
+
+
+def test_a_change_of_a_third_on_some_paths_is_found():
+    # Graded shares: 8 of 20 paths succeed in 7 of 10 repeats in place of all.
+    old = repeated([(f"p{k}", 1, 0) for k in range(20)])
+    new = repeated([(f"p{k}", 1, 3 if k < 8 else 0) for k in range(20)])
+    (success, *_) = compared(new, old).changes
+    assert success.change.high < 0
+    assert success.is_regression
 
 
 def test_a_recorded_sequence_without_truth_is_compared_by_its_losses():
@@ -226,12 +225,13 @@ def test_every_picture_and_table_is_made(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("design", [{"paths": 30}, {"paths": 12, "repeats": 1}])
+@pytest.mark.parametrize("design", [{"paths": 30}, {"paths": 12, "repeats": 1}, {"paths": 12, "repeats": 10}])
 def test_without_a_difference_there_is_hardly_ever_a_regression(design):
     wrong = 0
     for k in range(200):
         new, old = (study(runs(seed=2 * k + side, **design), ("speed",)) for side in (0, 1))
-        wrong += any(change.is_regression for change in metric_changes(pair_studies(new, old).pairs))
+        pairs = pair_studies(new, old).pairs
+        wrong += any(change.is_regression for change in metric_changes(pairs)) or len(regressed_pairs(pairs)) > 0
     assert wrong <= 10
 
 

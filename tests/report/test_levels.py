@@ -1,8 +1,10 @@
+import warnings
+
 import numpy as np
 import pandas as pd
 import pytest
 
-from slamgym.report.levels import find_factors, level_name, title_and_unit, with_levels
+from slamgym.report.levels import find_factors, level_name, tied_names, title_and_unit, with_columns, with_levels
 
 
 @pytest.mark.parametrize(
@@ -79,6 +81,30 @@ def test_a_factor_that_another_one_tells_belongs_to_it():
     (together,) = find_factors(table, ["loop_closure", "stride"])
     assert together.levels == ("off, 1", "off, 3", "on, 0", "on, 2")
     assert not together.is_numeric
+
+
+def test_what_other_rows_tell_apart_is_not_one_factor():
+    rows = pd.DataFrame({"stride": [0, 1, 0, 1], "slam": ["a", "b", "b", "a"]})
+    diagonal = rows[:2]
+    assert len(find_factors(diagonal, list(rows))) == 1
+    assert [factor.names for factor in find_factors(diagonal, list(rows), tied_names(rows, list(rows)))] == [
+        ("stride",),
+        ("slam",),
+    ]
+
+
+def test_a_table_of_many_columns_takes_more_at_once(recwarn):
+    wide = pd.DataFrame({"speed": [1.0, 2.0]})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", pd.errors.PerformanceWarning)
+        for k in range(150):
+            wide[f"column {k}"] = k
+    speed = find_factors(wide, ["speed"])
+    assert list(with_levels(wide, speed)[speed[0].column]) == ["1", "2"]
+    replaced = with_columns(wide, {"speed": [3.0, 4.0], "new": [5, 6]})
+    assert (replaced["speed"].tolist(), replaced["new"].tolist()) == ([3.0, 4.0], [5, 6])
+    assert replaced.columns.is_unique
+    assert not recwarn.list
 
 
 def test_levels_are_told_with_their_unit_or_their_factor():

@@ -1,13 +1,17 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from slamgym.eval.statistics import Interval
 from slamgym.report.accuracy import run_threshold, threshold_section
 from slamgym.report.causes import causes_section, causes_text
 from slamgym.report.correlations import correlations_section
 from slamgym.report.facts import study_facts
-from slamgym.report.failures import trend_text, trends
-from slamgym.report.judged import judged_runs
+from slamgym.report.failures import failures_section, trend_text, trends
+from slamgym.report.judged import judged_runs, of_complete_paths
 from slamgym.report.overview import figures
+from slamgym.report.study import study_content
 from slamgym.study.results import StudyResults
 from tests.report.varied_study import varied_study
 
@@ -59,7 +63,7 @@ def test_causes_are_counted_by_level():
         "stride 0": [3, 0],
         "stride 1": [0, 1],
     }
-    assert causes_text(judged) == "the most frequent cause of losses is darkness: 3 of 4 (75 %)"
+    assert causes_text(judged) == "the most frequent cause of losses is darkness: 3 of 4 (75 %), on 2 of 2 paths"
     (picture,) = causes_section(judged).pictures
     assert [bar.get_width() for bar in picture.draw().axes[0].containers[0]] == [1.5, 0.0]
 
@@ -70,7 +74,7 @@ def test_causes_are_counted_by_level():
         ({"unknown": 3}, "no cause stood out in any of the 3 losses"),
         (
             {"unknown": 9, "blur": 1},
-            "the most frequent cause of losses is blur: 1 of 10 (10 %); in 9 nothing stood out",
+            "the most frequent cause of losses is blur: 1 of 10 (10 %), on 1 of 1 path; in 9 nothing stood out",
         ),
         ({"fading": 2, "blur": 2}, "the most frequent causes of losses are fading points and blur: 2 each of 4"),
         ({}, "tracking was never lost"),
@@ -147,16 +151,102 @@ def test_a_trend_is_told_as_far_as_it_is_known():
     )
     beyond = told(paths=60, levels=(0.2, 0.4, 0.6, 0.8), half_fail_at=1.1)
     assert beyond.startswith("failures rise with the speed: ")
-    assert beyond.endswith("half of the runs would fail beyond them")
+    assert beyond.endswith("; fewer than half fail at every level tried")
+    below = told(paths=60, levels=(0.8, 1.0, 1.2, 1.4), half_fail_at=0.5)
+    assert below.endswith("; more than half fail at every level tried")
 
 
-def test_facts_tell_round_trips_and_loops():
+def with_shares(shares, factor="brightness", paths=12, repeats=3):
+    """All paths fail at each level in so many of their repeats, by the level's share; levels are 0, 1, 2..."""
+    made = varied_study({factor: list(range(len(shares)))}, paths=paths, repeats=repeats)
+    return changed(made, success=made.runs["repeat"] > repeats * made.runs[factor].map(dict(enumerate(shares))))
+
+
+def test_a_curve_that_does_not_fit_is_no_trend():
+    results = with_shares([1, 1 / 3, 0, 0, 2 / 3])
+    (trend,) = trends(judged_runs(results))
+    assert trend.changes
+    assert not trend.is_seen
+    headline, _, *levels = study_content(results).headlines
+    assert headline == (
+        "Failures do not simply rise or fall with the brightness: 100 % at brightness 0, 33 % at brightness 1, "
+        "0 % at brightness 2, 0 % at brightness 3, 67 % at brightness 4."
+    )
+    assert levels[0].startswith("Fewer failures with brightness 1: ")
+    (row,) = failures_section(judged_runs(results), [trend]).tables[0].frame.to_dict("records")
+    assert np.isnan([row["half fail at"], row["95 % from"], row["95 % to"]]).all()
+
+
+def test_levels_that_differ_without_a_rise_are_no_uncertain_trend():
+    (trend,) = trends(judged_runs(with_shares([1, 0, 0, 0, 1])))
+    assert not trend.changes
+    assert trend_text(trend, others=False).startswith(
+        "failures differ between levels of the brightness, but do not surely rise or fall: 100 % at brightness 0, 0 %"
+    )
+
+
+def test_ends_beyond_the_levels_tried_are_left_open():
+    made = varied_study({"speed": [0.2, 0.6, 1.0, 1.4]}, paths=20)
+    (trend,) = trends(judged_runs(made))
+
+    def with_midpoint(*middle):
+        return replace(trend, curve=replace(trend.curve, midpoint=Interval(*middle)))
+
+    open_below, open_above = with_midpoint(0.8, 0.1, 1.2), with_midpoint(0.8, 0.4, 1.5)
+    assert "(95 % interval 1.2 or less)" in trend_text(open_below, others=False)
+    assert "(95 % interval 0.40 or more)" in trend_text(open_above, others=False)
+    neither = with_midpoint(0.8, 0.1, 1.5)
+    assert trend_text(neither, others=False).startswith("failures rise with the speed: ")
+    table = failures_section(judged_runs(made), [open_below, open_above, neither]).tables[0].frame
+    shown = table[["half fail at", "95 % from", "95 % to"]].to_numpy()
+    assert shown[0, 1] == -np.inf
+    assert shown[1, 2] == np.inf
+    assert np.isnan(shown[2]).all()
+
+
+def test_levels_that_hard_paths_alone_were_driven_at_are_no_trend():
+    made = varied_study({"speed": [0.2, 0.6, 1.0, 1.4]}, paths=24, repeats=2)
+    path = np.repeat(np.arange(24), 8)
+    fails = path < 12
+    results = replace(made, runs=made.runs.assign(success=~fails)[~(fails & (made.runs["speed"] < 1.0))])
+    judged = judged_runs(results)
+    (trend,) = trends(judged)
+    assert set(trend.share_at.values()) == {0.0}
+    content = study_content(results)
+    left_out = "12 of 24 paths lack runs under some conditions; trends, the table at a glance and correlations leave "
+    assert content.notices[-1].startswith(left_out)
+    overview, failures = content.sections[:2]
+    assert overview.tables[0].frame["paths"].tolist() == [24, 12, 12, 12, 12]
+    assert overview.tables[0].caption.endswith(" Levels are of the 12 of 24 paths with runs under all conditions.")
+    assert failures.sentences[-1].startswith(left_out)
+
+
+def test_paths_of_other_conditions_are_not_compared_even_if_they_have_as_many():
+    made = varied_study({"speed": [0.2, 0.6, 1.0, 1.4]}, paths=9, repeats=1)
+    slow = made.runs["speed"] < 0.8
+    three = made.runs["path"].str.startswith("procedural:0 ")
+    judged = judged_runs(replace(made, runs=made.runs[slow ^ three]))
+    assert of_complete_paths(judged).paths == 6
+    assert not trends(judged)
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("run.reset_options.tour", "round_trip"),
+        ("run.reset_options.tour", "lap"),
+        ("agent", "patrol"),
+        ("agent", "lap"),
+    ],
+)
+def test_facts_tell_round_trips_and_loops(column, value):
     made = varied_study(paths=3, repeats=2)
-    back = {"run.reset_options.tour": "round_trip", "loops_closed": [0, 1, 2, 0, 0, 0]}
+    back = {column: value, "loops_closed": [0, 1, 2, 0, 0, 0]}
     results = changed(made, **back)
     facts = study_facts(results, judged_runs(results))
-    assert facts["Round trips"] == "3 drives back to the start; loops seen to close in 2 of 6 runs"
-    assert facts["Driven"] == "36 m in 48 s, 1,440 frames fed"
+    assert facts["Round trips"] == "3 drives back to the start; with loop closing on, a loop was seen to close in 2 of 6 runs"
+    assert facts["Shown to the SLAM"] == "36 m in 48 s, 1,440 frames fed"
     assert facts["Repeats"] == "2"
+    assert facts["Paths"] == "3 paths of dataset 0 in 1 house"
     assert facts["Versions"] == "slamgym 0.1.0"
     assert "Not run" not in facts

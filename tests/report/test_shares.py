@@ -65,6 +65,29 @@ def test_a_difference_is_told_where_the_interval_holds_no_zero(failures_on, word
     assert f"with loop on, {failures_on} of 20 runs failed; with loop off, 0 of 20" in difference_text(compared)
 
 
+def test_a_difference_that_depends_on_another_factor_says_so():
+    levels = [(0, "off"), (0, "on"), (1, "off"), (1, "on")]
+    rows = [(f"p{k}", 1, *level, level != (1, "on"), 0.1) for k in range(12) for level in levels]
+    judged = study_of(rows, ["stride", "loop"])
+    (compared,) = compare_levels(judged, judged.factors[0])
+    text = difference_text(compared)
+    assert "with stride 0, 0 of 24, over all levels of the other factors (difference 50 percentage points" in text
+    assert text.endswith("; it depends on the loop")
+    same_everywhere = [(*row[:4], row[2] == 0, 0.1) for row in rows]
+    judged = study_of(same_everywhere, ["stride", "loop"])
+    (compared,) = compare_levels(judged, judged.factors[0])
+    assert compared.depends_on == ()
+
+
+def test_intervals_that_hold_together_tell_their_own_confidence():
+    rows = [(f"p{k}", 1, speed, k > 2, 0.1 * speed) for k in range(12) for speed in (1, 2, 3, 4)]
+    judged = study_of(rows, ["speed"])
+    compared = compare_levels(judged, judged.factors[0])
+    assert "no difference seen that could not be chance with 12 paths" in difference_text(compared[0])
+    assert "98.3 % interval" in difference_text(compared[0])
+    assert "98.3 % interval" in ratio_text(compared[0])
+
+
 def test_few_paths_tell_nothing_of_others():
     rows = [(f"p{k}", 1, level, level == "off", 0.1) for k in range(4) for level in ("off", "on")]
     judged = study_of(rows, ["loop"])
@@ -95,7 +118,7 @@ def test_a_trend_rises_or_falls_as_the_runs_do():
     trend = failure_trend(rising, rising.factors[0])
     assert trend.rising
     assert trend.is_seen
-    assert trend.midpoint_is_inside
+    assert trend.midpoint_is_known
     assert 1.0 in trend.curve.midpoint
     falling = judged_runs(varied_study({"speed": [0.4, 0.8, 1.2, 1.6]}, paths=12, slope=-6.0))
     trend = failure_trend(falling, falling.factors[0])

@@ -1,7 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 
+from slamgym.report.judged import judged_runs
 from slamgym.report.study import study_content
 from slamgym.study.results import StudyResults
 from tests.report.varied_study import varied_study
@@ -22,7 +25,7 @@ def drawn(content):
 
 def checked(content):
     """Sentences that are sentences, and tables whose formats fit."""
-    told = [*content.headlines, *(text for section in content.sections for text in section.sentences)]
+    told = [*content.notices, *content.headlines, *(text for section in content.sections for text in section.sentences)]
     assert told
     for text in told:
         assert text.endswith(".")
@@ -111,18 +114,19 @@ def test_without_a_run_to_judge_it_says_so():
     made = varied_study({"speed": [0.2, 1.0]}, paths=2)
     not_run = with_all(made, status="not_run", success=np.nan, failure="house.glb: no such file")
     content = checked(study_content(not_run))
-    assert content.headlines == ("There is no run to judge: 8 could not be started.",)
+    assert content.notices == ("There is no run to judge: 8 could not be started.",)
+    assert not content.headlines
     assert content.facts["Not run"] == "8 runs: house.glb: no such file"
     assert not content.sections
     only_plan = not_run.runs[["run_id", "dataset", "path", "speed", "status", "failure"]]
     bare = StudyResults(made.folder, "bare", "", made.factors, 8, only_plan)
-    assert study_content(bare).headlines == content.headlines
+    assert study_content(bare).notices == content.notices
 
 
 def test_a_study_without_any_run_says_so():
     nothing = StudyResults(varied_study().folder, "nothing", "", ("speed",), 12, pd.DataFrame())
     content = study_content(nothing)
-    assert content.headlines == (
+    assert content.notices == (
         "The study is not finished: 0 of 12 runs are done, and all below is of these.",
         "There is no run to judge.",
     )
@@ -130,7 +134,7 @@ def test_a_study_without_any_run_says_so():
 
 def test_an_unfinished_study_says_so_first():
     content = study_content(varied_study({"speed": [0.2, 1.0]}, paths=8, planned=1000))
-    assert content.headlines[0] == "The study is not finished: 32 of 1,000 runs are done, and all below is of these."
+    assert content.notices[0] == "The study is not finished: 32 of 1,000 runs are done, and all below is of these."
     assert content.facts["Runs"] == "32 runs of 1,000 planned; the study is not finished"
 
 
@@ -138,8 +142,43 @@ def test_runs_that_could_not_be_started_are_no_failures_of_the_slam():
     made = varied_study({"speed": [0.2, 1.0]}, paths=8, half_fail_at=50)
     status = made.runs["status"].where(made.runs.index > 4, "not_run")
     content = study_content(with_all(made, status=status, success=made.runs["success"].where(made.runs.index > 4)))
-    assert content.headlines[0] == "5 runs could not be started and are left out."
-    assert content.headlines[1].startswith("0 of 27 runs failed (0 %;")
+    assert content.notices[0] == "5 runs could not be started and are left out."
+    assert content.headlines[0].startswith("0 of 27 runs failed (0 %;")
+
+
+def test_a_level_of_which_no_run_could_be_started_is_named():
+    made = varied_study({"speed": [0.2, 1.0, 1.8], "stride": [0, 1]}, paths=8)
+    gone = made.runs["speed"] == 1.8
+    content = study_content(with_all(made, status=made.runs["status"].mask(gone, "not_run")))
+    assert content.notices == (
+        "32 runs could not be started and are left out.",
+        "No run at 1.8 m/s could be started.",
+    )
+
+
+def test_factors_of_an_unfinished_study_are_not_taken_for_one():
+    made = varied_study({"stride": [0, 1], "loop_closure": [False, True]}, paths=8)
+    diagonal = made.runs[made.runs["stride"] == made.runs["loop_closure"]]
+    titles = [factor.title for factor in judged_runs(replace(made, runs=diagonal)).factors]
+    assert titles == ["stride", "loop closing"]
+    zipped = replace(made, runs=diagonal, planned=len(diagonal))
+    assert [factor.title for factor in judged_runs(zipped).factors] == ["stride with loop closing"]
+
+
+def test_paths_of_one_house_tell_of_these_houses():
+    made = varied_study({"stride": [0, 1]}, paths=12)
+    (overall,) = [text for text in study_content(made).headlines if " of 48 runs failed" in text]
+    assert overall.endswith(" for paths like these 12 in these 4 houses).")
+    (overall,) = [
+        text for text in study_content(with_all(made, scene=made.runs["path"])).headlines if " of 48 runs" in text
+    ]
+    assert overall.endswith(" for paths like these 12).")
+
+
+def test_of_levels_that_are_alike_the_furthest_is_told():
+    made = varied_study({"stride": ["none", "few", "many"]}, paths=8, half_fail_at=50)
+    told = study_content(with_all(made, success=True)).headlines
+    assert any(text.startswith("With stride many, 0 of 16 runs failed; with stride none, 0 of 16: ") for text in told)
 
 
 def test_recorded_sequences_without_drives_have_a_report():
@@ -151,7 +190,7 @@ def test_recorded_sequences_without_drives_have_a_report():
     content = checked(study_content(without))
     # 72 runs of 240 frames at 30 frames a second, of which a stride of s feeds every (s + 1)-th.
     seconds = 24 * 239 / 30 * (1 + 2 + 4)
-    assert f"in {seconds / 60:.0f} min, 17,280 frames fed" in content.facts["Driven"]
+    assert f"in {seconds / 60:.0f} min, 17,280 frames fed" in content.facts["Shown to the SLAM"]
     drawn(content)
 
 

@@ -1,7 +1,7 @@
 import pytest
 
 from slamgym.eval.statistics import Interval
-from slamgym.report.wording import count, listed, number, number_range, percent, percent_range, sentence
+from slamgym.report.wording import confidence, count, listed, number, number_range, percent, percent_range, sentence
 
 
 @pytest.mark.parametrize(
@@ -50,6 +50,9 @@ def test_intervals_and_lists():
     assert percent_range(Interval(0.0, -0.001, 0.001)) == "0 to 0 %"
     assert number_range(Interval(0.9, 0.81, 1.14)) == "0.81 to 1.1"
     assert number_range(Interval(0.9, 0.81, float("inf"))) == "0.81 or more"
+    assert number_range(Interval(0.9, float("-inf"), 1.14)) == "1.1 or less"
+    assert confidence(Interval(0.0, 0.0, 0.0)) == "95 % interval"
+    assert confidence(Interval(0.0, 0.0, 0.0, 1 - 0.05 / 3)) == "98.3 % interval"
     assert [count(1, "run"), count(31000, "run")] == ["1 run", "31,000 runs"]
     assert [listed([]), listed(["a"]), listed(["a", "b"]), listed(["a", "b", "c"])] == [
         "",

@@ -5,6 +5,7 @@ import slamgym  # noqa: F401
 from slamgym.agents import AGENTS
 from slamgym.recording import record_drive
 from slamgym.study import estimate as costs
+from slamgym.study.costs import Costs
 from slamgym.study.estimate import estimate
 from slamgym.study.plan import plan_study
 from slamgym.study.spec import StudySpec
@@ -51,6 +52,21 @@ def test_in_real_time_a_run_takes_as_long_as_its_drive():
     fixed = {"path_length_m": 10, "speed": 1, "fps": 10, "slam_sync": "realtime"}
     about = estimate(planned(fixed, [{"stride": [0, 3]}]))
     assert about.slam_s == pytest.approx(2 * (10.1 + costs.RUN_S))
+
+
+@pytest.mark.parametrize(
+    ("agent", "tour"),
+    [("follower", 1.0), ("look_around", 1.0), ("patrol", costs.ROUND_TRIP), ("lap", costs.ROUND_TRIP)],
+)
+def test_round_trips_are_longer_than_asked_for(agent, tour):
+    about = estimate(planned({"agent": agent, "path_length_m": 10, "speed": 0.5, "fps": 20}))
+    assert about.frames_rendered == pytest.approx(10 * tour / 0.5 * 20, abs=2)
+
+
+def test_a_slow_slam_gets_the_time_that_its_own_limits_allow():
+    (run,) = planned({"path_length_m": 5, "speed": 0.5, "fps": 20, "slam_timeout_s": 30, "slam_finish_timeout_s": 7})
+    assert Costs([run]).limit_s(run) > 201 * 30 + 2 * 7
+    assert Costs([run]).limit_s(run.drive) < 201 * 30
 
 
 def test_a_drive_is_cut_off():

@@ -76,6 +76,7 @@ def test_tidying_removes_what_was_half_written_and_nothing_else(tmp_path):
     ]
     for path in stay + go:
         path.mkdir(parents=True)
+    (folder.run("d-1/r-1") / "episode.json").write_text("{}")
     folder.tidy()
     assert all(path.exists() for path in stay)
     assert not any(path.exists() for path in go)

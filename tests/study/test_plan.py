@@ -177,6 +177,11 @@ def test_two_paths_of_one_name_are_refused(tmp_path):
         ("factors:\n- stride: [0]\n- speed: [0.2, -1]", 6, "speed: the value should be greater than 0, got -1"),
         ("factors:\n- stride: [0, -1]", 5, "stride: the value should be greater than or equal to 0"),
         ("factors:\n- stride: [0]\n- slam: [orbslam3, orbslm3]", 6, "unknown slam backend 'orbslm3'"),
+        (
+            "fixed: {slam: 'beside:Mine'}",
+            4,
+            "No module named 'beside'; install its package, or set PYTHONPATH to its folder",
+        ),
         ("fixed:\n  stride: 0\n  slam: orbslm3", 6, "unknown slam backend 'orbslm3'"),
         (
             "fixed: {slam: opencv}\nfactors:\n- loop_closure: [off, on]",
@@ -188,7 +193,14 @@ def test_two_paths_of_one_name_are_refused(tmp_path):
         ("fixed:\n  slam_options:\n    levels: 8\n    features: 1", 7, "slam option 'features'"),
         ("factors:\n- scene_options.texture: [1, 5]", 5, "scene option 'texture'"),
         ("factors:\n- fps: [30]\n- agent: [patrl]", 6, "did you mean 'patrol'?"),
-        ("fixed: {agent: cautious}", 4, "expected one that drives without a SLAM"),
+        ("fixed: {agent: cautious}", 4, "without a SLAM, one of follower, lap, look_around, patrol, got 'cautious'"),
+        ("repeats: 9999999999999999", 4, "repeats: the value should be less than or equal to 10000"),
+        (
+            "repeats: 10000\nfactors:\n- stride: [0, 1, 2]\n- speed: [0.1, 0.2, 0.3, 0.4]\n"
+            "- fps: [10, 11, 12]\n- brightness: [1, 2, 3]",
+            4,
+            "expected at most 1,000,000 runs, got 1,080,000",
+        ),
         ("fixed: {busy_processes: -1}", 4, "busy_processes"),
         ("fixed: {max_episode_steps: 0}", 4, "max_episode_steps"),
         ("factors:\n- depth_noise: [none, icl]", 5, "unknown depth_noise 'icl'; did you mean 'icl_nuim'?"),

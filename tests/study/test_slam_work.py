@@ -18,6 +18,7 @@ from slamgym.study.drive_work import load_drive, record_planned_drive
 from slamgym.study.planned import PlannedDrive, PlannedRun
 from slamgym.study.recorded_run import read_recorded_run
 from slamgym.study.slam_work import read_planned, run_planned
+from slamgym.study.work import write_crashed
 
 DRIVE = PlannedDrive(
     drive_id="d1",
@@ -137,6 +138,18 @@ def test_frames_around_a_loss_are_kept_for_a_person(dark_drive, tmp_path):
     # 1.0 s and 0.3 s before, the last tracked, the first lost, 0.3 s and 1.0 s after it: of these two are dark.
     brightness = [strip[:150, k * 204 : k * 204 + 200].mean() for k in range(6)]
     assert [value < 5 for value in brightness] == [False, False, False, True, True, False]
+
+
+def test_a_run_that_ended_its_worker_can_be_repeated(drive_folder, dark_drive, tmp_path):
+    write_crashed(planned(slam="groundtruth", stride=2), drive_folder, tmp_path / "dead", "gone")
+    run_planned(planned(slam="groundtruth", stride=2), drive_folder, tmp_path / "run")
+    dead, alive = (yaml.safe_load((tmp_path / name / "config.yaml").read_text()) for name in ("dead", "run"))
+    assert dead == alive
+    assert read_recorded_run(tmp_path / "dead") == read_recorded_run(tmp_path / "run")
+    drive, folder = dark_drive
+    write_crashed(planned(drive, slam="opencv"), folder, tmp_path / "night", "gone")
+    with pytest.raises(ConfigError, match=f"slamgym replay {drive.sequence} --out DIR --slam opencv"):
+        read_recorded_run(tmp_path / "night")
 
 
 def test_frames_that_cannot_be_read_are_told(drive_folder, tmp_path):

@@ -6,10 +6,19 @@ import pandas as pd
 import pytest
 import yaml
 
-from slamgym.errors import ConfigError
+from slamgym.errors import ConfigError, TrajectoryWarning
 from slamgym.study.folder import Plan, StudyFolder, write_plan
 from slamgym.study.planned import PlannedDrive, PlannedRun
-from slamgym.study.table import joined, not_run_row, open_study, read_table, run_row, write_table
+from slamgym.study.table import (
+    joined,
+    judged,
+    not_run_row,
+    open_study,
+    read_table,
+    run_row,
+    succeeded,
+    write_table,
+)
 
 DRIVE = PlannedDrive("d-1", "procedural", "procedural:1 #7", {"scene": "procedural:1", "speed": 0.5}, 7)
 
@@ -148,7 +157,36 @@ def test_a_damaged_run_folder_is_named(tmp_path, name):
         run_row(path)
 
 
-def test_a_damaged_table_is_named(tmp_path):
-    (tmp_path / "runs.parquet").write_text("no table")
-    with pytest.raises(ConfigError, match=r"runs\.parquet: expected a table .+ remove it"):
-        read_table(tmp_path / "runs.parquet")
+@pytest.mark.parametrize("content", ["no table", "", None, "other columns"])
+def test_a_damaged_table_is_made_anew(tmp_path, content):
+    folder, run = StudyFolder(tmp_path), planned("r1")
+    write_plan(folder, plan_of(run))
+    make_run(folder, run, {}, {"status": "ok", "success": True})
+    if content is None:
+        folder.table.mkdir()
+    elif content == "other columns":
+        pd.DataFrame({"a": [1]}).to_parquet(folder.table)
+    else:
+        folder.table.write_text(content)
+    assert open_study(tmp_path).runs["status"].tolist() == ["ok"]
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [("episode.json", "[]"), ("episode.json", '{"status"'), ("config.yaml", ""), ("planned.json", "")],
+)
+def test_a_damaged_run_is_left_out_with_a_warning(tmp_path, name, content):
+    folder, runs = StudyFolder(tmp_path), [planned("r1"), planned("r2")]
+    write_plan(folder, plan_of(*runs))
+    for run in runs:
+        make_run(folder, run, {}, {"status": "ok", "success": True})
+    (folder.run("d-1/r2") / name).write_text(content)
+    with pytest.warns(TrajectoryWarning, match="r2.+it is left out"):
+        assert open_study(tmp_path).runs["run_id"].tolist() == ["d-1/r1"]
+
+
+def test_what_could_not_be_run_is_neither_judged_nor_a_success():
+    runs = pd.DataFrame({"status": ["ok", "not_run", "lost"], "success": [True, None, False]})
+    assert succeeded(runs).tolist() == [True, False, False]
+    assert judged(runs)["status"].tolist() == ["ok", "lost"]
+    assert succeeded(pd.DataFrame({"status": ["ok"]})).tolist() == [False]

@@ -2,9 +2,11 @@
 
 from dataclasses import dataclass
 
+from slamgym.report.comparison.broken import broken_pairs, regressed_pairs
 from slamgym.report.comparison.compared import Compared, pair_names
 from slamgym.report.comparison.content import comparison_content
 from slamgym.report.comparison.differences import MetricChange, metric_changes
+from slamgym.report.comparison.doubts import reasons_not_to_judge
 from slamgym.report.comparison.pairing import pair_studies
 from slamgym.report.comparison.settings import SettingChange, setting_changes
 from slamgym.report.content import ReportContent
@@ -18,13 +20,17 @@ class Comparison:
     """content: the report. settings: what differs in what was asked for. changes: each metric in both studies.
 
     broken: names of the paths, with their levels, of which all repeats succeeded before and most fail now; with few
-    repeats some of them by chance, so they are told and are no regression.
+    repeats some of them by chance, so they are told and are no regression. regressed_pairs: names of those whose
+    repeats fail more often by more than chance, see `.broken`. not_judged: why it means nothing when nothing regressed:
+    what was expected, what came, what to do; empty where it does mean something.
     """
 
     content: ReportContent
     settings: tuple[SettingChange, ...]
     changes: tuple[MetricChange, ...]
     broken: tuple[str, ...]
+    regressed_pairs: tuple[str, ...]
+    not_judged: tuple[str, ...]
 
     @property
     def regressions(self) -> tuple[MetricChange, ...]:
@@ -32,6 +38,11 @@ class Comparison:
         says it in a line.
         """
         return tuple(change for change in self.changes if change.is_regression)
+
+    @property
+    def has_regressed(self) -> bool:
+        """Whether a metric is worse, or single pairs are."""
+        return bool(self.regressions or self.regressed_pairs)
 
 
 def compare_studies(new: StudyResults, baseline: StudyResults) -> Comparison:
@@ -41,6 +52,15 @@ def compare_studies(new: StudyResults, baseline: StudyResults) -> Comparison:
     """
     pairing = pair_studies(new, baseline)
     settings = setting_changes(pairing.runs["new"], pairing.runs["baseline"])
-    compared = Compared(new, baseline, pairing, settings, metric_changes(pairing.pairs))
-    broken = pair_names(compared.broken, pairing.factors)
-    return Comparison(comparison_content(compared), settings, compared.changes, tuple(broken))
+    pairs = pairing.pairs
+    compared = Compared(
+        new, baseline, pairing, settings, metric_changes(pairs), broken_pairs(pairs), regressed_pairs(pairs)
+    )
+    return Comparison(
+        content=comparison_content(compared),
+        settings=settings,
+        changes=compared.changes,
+        broken=pair_names(compared.broken, pairing.factors),
+        regressed_pairs=pair_names(compared.regressed, pairing.factors),
+        not_judged=tuple(reasons_not_to_judge(compared)),
+    )

@@ -14,27 +14,25 @@ from slamgym.study.results import StudyResults
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Compared:
-    """Two studies, their pairs, and how they differ in what was asked for and in what came of it."""
+    """Two studies, their pairs, and how they differ in what was asked for and in what came of it.
+
+    broken, regressed: rows of the pairs, see `.broken`.
+    """
 
     new: StudyResults
     baseline: StudyResults
     pairing: Pairing
     settings: tuple[SettingChange, ...]
     changes: tuple[MetricChange, ...]
-
-    @property
-    def broken(self) -> pd.DataFrame:
-        """Pairs of which all repeats succeeded before and most fail now."""
-        pairs = self.pairing.pairs
-        before = pairs["successes.baseline"] == pairs["runs.baseline"]
-        return pairs[before & (2 * pairs["successes.new"] < pairs["runs.new"])]
+    broken: pd.DataFrame
+    regressed: pd.DataFrame
 
 
-def pair_names(pairs: pd.DataFrame, factors: Sequence[str]) -> list[str]:
+def pair_names(pairs: pd.DataFrame, factors: Sequence[str]) -> tuple[str, ...]:
     """Paths with their levels, in words."""
 
     def name(row: Mapping[Hashable, str]) -> str:
         levels = ", ".join(f"{title_and_unit(factor)[0]} {row[factor]}" for factor in factors)
         return f"{row['place']} ({levels})" if levels else row["place"]
 
-    return [name(row) for row in pairs[["place", *factors]].to_dict("records")]
+    return tuple(name(row) for row in pairs[["place", *factors]].to_dict("records"))

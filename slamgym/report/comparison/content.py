@@ -45,7 +45,8 @@ def _rule() -> str:
     tolerances = [f"{metric.name_text} {metric.tolerance_text}" for metric in METRICS if metric.tolerance is not None]
     return (
         f"a metric has regressed when it is worse by more than its tolerance ({listed(tolerances)}), its whole interval"
-        f" is on the worse side, and its corrected p is below {SIGNIFICANT}"
+        f" is on the worse side, and its corrected p is below {SIGNIFICANT}; a single pair has when its repeats fail"
+        f" more often, with a p below {SIGNIFICANT} by Fisher's exact test, corrected for the number of pairs (Holm)"
     )
 
 

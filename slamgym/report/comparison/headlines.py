@@ -40,8 +40,14 @@ def headlines(compared: Compared) -> Iterator[str]:
     """What the data say, the most important first, each without a full stop."""
     regressions = [change for change in compared.changes if change.is_regression]
     yield from (f"regression: {_told(change)}" for change in regressions)
-    if not regressions:
+    if len(compared.regressed):
+        yield (
+            f"regression: the repeats of {count(len(compared.regressed), 'pair')} fail more often, by more than chance "
+            f"explains: {some_of(pair_names(compared.regressed, compared.pairing.factors))}"
+        )
+    if not regressions and compared.regressed.empty:
         yield _no_regression(compared.pairing.paths, paths_needed(compared.changes))
+    yield from _missing(compared)
     if any(change.of_drive for change in compared.settings):
         names = [change.name for change in compared.settings if change.of_drive]
         yield f"the drives are not the same in both ({some_of(names)}), and part of what differs may come from that"
@@ -55,6 +61,19 @@ def headlines(compared: Compared) -> Iterator[str]:
         yield (
             f"all repeats succeeded before and most fail now in {count(len(compared.broken), 'pair')}: "
             f"{some_of(pair_names(compared.broken, compared.pairing.factors))}"
+        )
+
+
+def _missing(compared: Compared) -> Iterator[str]:
+    """Runs without a result: those to come, and those the SLAM was never started for."""
+    for side, study in (("new study", compared.new), ("baseline", compared.baseline)):
+        if (done := len(study.runs)) < study.planned:
+            yield f"the {side} is not finished: {done:,} of {count(study.planned, 'run')} have a result"
+    not_begun = compared.pairing.not_begun
+    if any(not_begun.values()):
+        yield (
+            f"{count(not_begun['new'], 'run')} of the new study and {not_begun['baseline']:,} of the baseline were not "
+            "begun, and are left out"
         )
 
 

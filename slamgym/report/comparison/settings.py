@@ -11,6 +11,9 @@ from slamgym.report.levels import level_name
 CONDITIONS = ("busy_processes", "fps")
 PREFIX = "run."
 VERSIONS = "versions."
+HOUSE = "run.versions.house_sha256"
+DRIVEN_BY = ("run.agent", "run.reset_options.")
+"""How the names of columns begin that tell who drove, and where."""
 NOT_TOLD = "not told"
 
 
@@ -29,24 +32,33 @@ class SettingChange(NamedTuple):
 def setting_changes(new: pd.DataFrame, baseline: pd.DataFrame) -> tuple[SettingChange, ...]:
     """What differs between the runs of two studies, as they are in a `Pairing`: parameters first."""
     names = [name for name in dict.fromkeys([*new, *baseline]) if _is_setting(name)]
-    changes = [_change(name, new, baseline) for name in names]
-    differing = [change for change in changes if change.new != change.baseline]
-    return tuple(sorted(differing, key=lambda change: (change.name.startswith(VERSIONS), change.of_drive)))
+    values = {name: (_values(baseline, name), _values(new, name)) for name in names}
+    changes = [_change(name, before, now) for name, (before, now) in values.items() if before != now]
+    return tuple(sorted(changes, key=lambda change: (change.name.startswith(VERSIONS), change.of_drive)))
 
 
 def _is_setting(name: str) -> bool:
     root = name.split(".")[0]
-    # The scene belongs to the path; where paths differ, runs have no partners.
     known = root in DRIVE_NAMES or root in SlamParams.model_fields or root in CONDITIONS
-    return name.startswith(PREFIX + VERSIONS) or (known and name != "scene")
+    # The scene belongs to the path; where paths differ, runs have no partners. An agent is told by "run.agent".
+    return name.startswith((PREFIX + VERSIONS, *DRIVEN_BY)) or (known and name not in ("scene", "agent"))
 
 
-def _change(name: str, new: pd.DataFrame, baseline: pd.DataFrame) -> SettingChange:
-    old_value, new_value = (_values(runs, name) for runs in (baseline, new))
-    return SettingChange(name.removeprefix(PREFIX), old_value, new_value, name.split(".")[0] in DRIVE_NAMES)
+def _change(name: str, before: frozenset[str], now: frozenset[str]) -> SettingChange:
+    of_drive = name.split(".")[0] in DRIVE_NAMES or name.startswith((HOUSE, *DRIVEN_BY))
+    return SettingChange(name.removeprefix(PREFIX), _shown(before, now), _shown(now, before), of_drive)
 
 
-def _values(runs: pd.DataFrame, name: str) -> str:
+def _values(runs: pd.DataFrame, name: str) -> frozenset[str]:
+    """All values in words; of houses with their paths, each of which has its own."""
     if name not in runs:
-        return NOT_TOLD
-    return some_of(level_order(level_name(value) for value in runs[name].drop_duplicates()))
+        return frozenset({NOT_TOLD})
+    if name == HOUSE:
+        houses = runs[["place", name]].drop_duplicates()
+        return frozenset(f"{level_name(house)} ({place})" for place, house in houses.itertuples(index=False))
+    return frozenset(map(level_name, runs[name].drop_duplicates()))
+
+
+def _shown(values: frozenset[str], others: frozenset[str]) -> str:
+    """The values, first those that the other study lacks, since of many only some are shown."""
+    return some_of(sorted(level_order(values), key=others.__contains__))

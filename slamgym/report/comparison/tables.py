@@ -9,7 +9,7 @@ import pandas as pd
 from slamgym.report.comparison.compared import Compared
 from slamgym.report.comparison.differences import MetricChange, metric_change, outcome_counts, pair_changes
 from slamgym.report.comparison.metrics import ATE, SUCCESS
-from slamgym.report.comparison.pairing import SIDES, Pairing, level_order
+from slamgym.report.comparison.pairing import Pairing, level_order
 from slamgym.report.content import DataTable
 from slamgym.report.levels import title_and_unit
 
@@ -56,9 +56,10 @@ def levels_table(pairs: pd.DataFrame, factor: str) -> DataTable:
     return DataTable(
         name=f"compared_{factor.replace('.', '_')}",
         title=f"By {title}",
-        caption="Better, worse, equal: pairs, by the ATE, where a failure is worse than any success.",
+        caption="Better, worse, equal: pairs, by the ATE, where a failure is worse than any success. Old: the "
+        "baseline.",
         frame=pd.DataFrame([{label: level, **_level_row(pairs[pairs[factor] == level])} for level in levels]),
-        formats={"success, new": "{:.1%}", "success, baseline": "{:.1%}"},
+        formats={"success, new": "{:.1%}", "success, old": "{:.1%}"},
     )
 
 
@@ -68,7 +69,7 @@ def _level_row(pairs: pd.DataFrame) -> dict[str, Any]:
     return {
         "paths": success.paths,
         "success, new": success.new,
-        "success, baseline": success.baseline,
+        "success, old": success.baseline,
         "success, change": success.change_text,
         "ATE, change": ate.change_text,
         "better": counts["wins"],
@@ -88,6 +89,8 @@ def pairs_tables(compared: Compared) -> tuple[DataTable, ...]:
     tables = [
         _pairs_table("compared_most_changed", "What changed most", most, compared.pairing,
                      "By the change of the success rate, then by that of the ATE."),
+        _pairs_table("compared_regressed", "Fail more often", compared.regressed, compared.pairing,
+                     "Their repeats fail more often than before, by more than chance explains."),
         _pairs_table("compared_broken", "Broken", compared.broken, compared.pairing,
                      "All repeats succeeded before, and most fail now. With few repeats, some of them by chance."),
     ]  # fmt: skip
@@ -98,9 +101,10 @@ def _pairs_table(name: str, title: str, pairs: pd.DataFrame, pairing: Pairing, c
     frame = pairs.reset_index(drop=True)
     columns: dict[str, Any] = {"path": frame["place"]}
     columns |= {title_and_unit(factor)[0]: frame[factor] for factor in pairing.factors}
-    for side in SIDES:
+    for word, side in (("new", "new"), ("old", "baseline")):
         successes, runs = frame[f"successes.{side}"].astype(str), frame[f"runs.{side}"].astype(str)
-        columns |= {f"succeeded, {side}": successes + " of " + runs, f"ATE, {side} (m)": frame[f"{ATE.name}.{side}"]}
-    table = pd.DataFrame(columns | {"ATE, new / baseline": np.exp(pair_changes(frame, ATE))})
-    formats = {"ATE, new (m)": "{:.4f}", "ATE, baseline (m)": "{:.4f}", "ATE, new / baseline": "{:.2f}"}
-    return DataTable(name=name, title=title, caption=caption, frame=table, formats=formats)
+        columns |= {f"ok, {word}": successes + " of " + runs, f"ATE, {word} (m)": frame[f"{ATE.name}.{side}"]}
+    table = pd.DataFrame(columns | {"ATE ratio": np.exp(pair_changes(frame, ATE))})
+    formats = {"ATE, new (m)": "{:.4f}", "ATE, old (m)": "{:.4f}", "ATE ratio": "{:.2f}"}
+    legend = "ok: repeats that succeeded; old: the baseline; ratio: new to old."
+    return DataTable(name=name, title=title, caption=f"{caption} {legend}", frame=table, formats=formats)

@@ -11,7 +11,9 @@ import numpy as np
 from markupsafe import Markup
 
 from slamgym.eval.plots.names import percent
+from slamgym.report.causes import told
 from slamgym.report.page.pictures import data_url
+from slamgym.report.page.repeat import replay_line
 from slamgym.report.page.run_columns import is_success
 from slamgym.report.page.run_files import RunFiles, read_run
 from slamgym.report.page.run_map import run_map
@@ -75,7 +77,7 @@ def details(results: StudyResults, page_folder: Path) -> Iterator[Detail]:
         if run is None:
             continue
         losses = list(_losses(run, folder, runs_url(results, page_folder) + quote(run_ids[row]), room - KEPT_ROOM))
-        html = _told(run, losses, results.folder / "drives" / drive_ids[row])
+        html = _html(run, losses, results.folder / "drives" / drive_ids[row], replay_line(folder))
         if len(html) > room:
             return
         room -= len(html)
@@ -87,7 +89,7 @@ def runs_url(results: StudyResults, page_folder: Path) -> str:
     return quote(os.path.relpath(results.folder / "runs", page_folder)) + "/"
 
 
-def _told(run: RunFiles, losses: list[dict[str, Any]], drive_folder: Path) -> Markup:
+def _html(run: RunFiles, losses: list[dict[str, Any]], drive_folder: Path, repeat: str | None) -> Markup:
     return filled(
         "run.html",
         failure=run.summary.get("failure", ""),
@@ -95,15 +97,16 @@ def _told(run: RunFiles, losses: list[dict[str, Any]], drive_folder: Path) -> Ma
         timeline=timeline(run),
         figures=_figures(run.summary),
         losses=losses,
+        repeat=repeat,
     )
 
 
 def _figures(summary: Mapping[str, Any]) -> dict[str, str]:
     """Those of FIGURES that the run has, as text."""
-    told = {label: (_at(summary, key), style) for label, (key, style) in FIGURES.items()}
+    known = {label: (_at(summary, key), style) for label, (key, style) in FIGURES.items()}
     return {
         label: percent(value) if style == SHARE else shown_value(value, style)
-        for label, (value, style) in told.items()
+        for label, (value, style) in known.items()
         if value is not None
     }
 
@@ -125,7 +128,8 @@ def _losses(run: RunFiles, folder: Path, url: str, room: int) -> Iterator[dict[s
         strip = _strip(folder / LOSSES / f"{number}.jpg", f"{url}/{LOSSES}/{number}.jpg", room)
         if strip is not None and strip.embedded:
             room -= len(strip.url)
-        yield {**loss, "context": loss.get("context") or {}, "strip": strip}
+        context = loss.get("context") or {}
+        yield {**loss, "context": context, "cause": told(str(context.get("cause") or "unknown")), "strip": strip}
 
 
 def _strip(file: Path, url: str, room: int) -> Strip | None:

@@ -1,29 +1,32 @@
 """The table of all runs as the page's script reads it: by columns, words once, so that 100,000 rows are a few MB."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from slamgym.eval.plots import printable
+from slamgym.report.causes import PREFIX, told
 from slamgym.report.levels import level_name, title_and_unit
 from slamgym.report.page.tables import NOTHING, shown_value
 from slamgym.study.results import StudyResults
 from slamgym.study.table import NOT_RUN
 from slamgym.types import IntArray
 
-CAUSE = "loss_causes."
-
 FIGURES = {
-    "loss_count": ("losses", 0),
     "completion": ("completion (%)", 1),
+    "loss_count": ("losses", 0),
     "ate_rmse_m": ("ATE (m)", 4),
+}
+"""Column of the runs' table -> its heading here, and the decimals of its values."""
+
+MORE_FIGURES = {
     "rpe_second_trans_rmse_m": ("RPE over 1 s (m)", 4),
     "time_to_first_loss_s": ("first loss (s)", 1),
     "loops_closed": ("loops closed", 0),
 }
-"""Column of the runs' table -> its heading here, and the decimals of its values."""
+"""Those for which there may be no room on the screen, at the table's right end."""
 
 OUTCOMES = {
     "lost": "failed: lost at the end",
@@ -57,41 +60,49 @@ class RunColumn(NamedTuple):
 def runs_data(runs: pd.DataFrame, columns: Sequence[RunColumn]) -> dict[str, Any]:
     """What the page's script needs for the table: in JSON types, every text printable.
 
-    "drive" and "rest" make a run's id, with a slash between.
+    "drive" and "rest" make a run's id, with a slash between; "kind" is how each is to be repeated, see `run_kinds`.
     """
     ids = [str(run_id).partition("/") for run_id in runs["run_id"]]
     return {
         "drive": _words_of("drive", [drive for drive, _, _ in ids])._asdict(),
         "rest": _words_of("rest", [rest for _, _, rest in ids])._asdict(),
+        "kind": _words_of("kind", run_kinds(runs))._asdict(),
         "columns": [column._asdict() for column in columns],
         "nothing": NOTHING,
     }
 
 
 def run_columns(results: StudyResults) -> list[RunColumn]:
-    """What the table shows of each run."""
+    """What the table shows of each run: what it came to before what was varied, whatever the number of factors."""
     runs = results.runs
     varied = {name for name in ("dataset", "repeat") if name in runs and runs[name].nunique() > 1}
     return [
-        *(_words_of(name, runs[name], filtered=True) for name in ("dataset",) if name in varied),
         _words_of("path", runs["path"]),
+        _words_of("outcome", outcomes(runs), filtered=True),
+        *_figures(runs, FIGURES),
+        _words_of("causes of losses", loss_causes(runs)),
         *(_levels_of(name, runs[name]) for name in results.factors if name in runs),
         *(_words_of(name, runs[name]) for name in ("repeat",) if name in varied),
-        _words_of("outcome", outcomes(runs), filtered=True),
-        *(_figures(runs[name], name) for name in FIGURES if name in runs),
-        _words_of("causes of losses", loss_causes(runs)),
+        *(_words_of(name, runs[name], filtered=True) for name in ("dataset",) if name in varied),
+        *_figures(runs, MORE_FIGURES),
     ]
+
+
+def run_kinds(runs: pd.DataFrame) -> list[str]:
+    """Of each run "drive", "sequence" where its images were recorded by somebody, "none" where it has no folder."""
+    recorded = runs["sequence"].notna() if "sequence" in runs else pd.Series(False, runs.index)
+    return list(np.select([runs["status"] == NOT_RUN, recorded], ["none", "sequence"], "drive"))
 
 
 def outcomes(runs: pd.DataFrame) -> list[str]:
     """How each run ended, in words: a colour alone would not do."""
     status = runs["status"].astype(str)
     losses = pd.to_numeric(runs["loss_count"], errors="coerce") if "loss_count" in runs else pd.Series(0, runs.index)
-    told = status.map(OUTCOMES).fillna("failed: " + status)
-    told[status == "ok"] = "failed: tracked too little"
-    told[(status == "ok") & (losses > 0)] = "failed: lost for a time"
-    told[is_success(runs)] = "success"
-    return list(told)
+    words = status.map(OUTCOMES).fillna("failed: " + status)
+    words[status == "ok"] = "failed: tracked too little"
+    words[(status == "ok") & (losses > 0)] = "failed: lost for a time"
+    words[is_success(runs)] = "success"
+    return list(words)
 
 
 def is_success(runs: pd.DataFrame) -> "pd.Series[bool]":
@@ -103,14 +114,14 @@ def is_success(runs: pd.DataFrame) -> "pd.Series[bool]":
 
 def loss_causes(runs: pd.DataFrame) -> list[str | None]:
     """The causes of each run's losses, the most frequent first; None for a run without."""
-    names = [name for name in runs if str(name).startswith(CAUSE)]
+    names = [name for name in runs if str(name).startswith(PREFIX)]
     counts = runs[names].apply(pd.to_numeric, errors="coerce").fillna(0).to_numpy(dtype=np.int64)
-    words = [str(name).removeprefix(CAUSE).replace("_", " ") for name in names]
-    told: list[str | None] = [None] * len(runs)
+    words = [told(str(name)) for name in names]
+    texts: list[str | None] = [None] * len(runs)
     for row in np.flatnonzero(counts.any(axis=1)):
         order = [k for k in np.argsort(-counts[row], kind="stable") if counts[row, k]]
-        told[row] = ", ".join(words[k] if counts[row, k] == 1 else f"{words[k]} ({counts[row, k]})" for k in order)
-    return told
+        texts[row] = ", ".join(words[k] if counts[row, k] == 1 else f"{words[k]} ({counts[row, k]})" for k in order)
+    return texts
 
 
 def _words_of(heading: str, values: "Sequence[Any] | pd.Series[Any]", *, filtered: bool = False) -> RunColumn:
@@ -142,8 +153,11 @@ def _sort_key(word: str) -> tuple[int, float, str]:
         return 1, 0.0, word
 
 
-def _figures(values: "pd.Series[Any]", name: str) -> RunColumn:
-    heading, decimals = FIGURES[name]
+def _figures(runs: pd.DataFrame, shown: Mapping[str, tuple[str, int]]) -> list[RunColumn]:
+    return [_figure(runs[name], name, *style) for name, style in shown.items() if name in runs]
+
+
+def _figure(values: "pd.Series[Any]", name: str, heading: str, decimals: int) -> RunColumn:
     numbers = pd.to_numeric(values, errors="coerce").to_numpy(dtype=np.float64)
     if name == "completion":
         # Rounded down: "100.0" is all.

@@ -6,6 +6,7 @@ import numpy as np
 
 from slamgym.report.page.run_files import RunFiles
 from slamgym.report.page.run_map import LINE_POINTS, pieces, svg_points
+from slamgym.report.wording import number
 from slamgym.types import BoolArray, FloatArray
 
 WIDTH, HEIGHT = 1000, 100
@@ -32,6 +33,10 @@ class Curve:
     lines: tuple[str, ...]
     top: float
     bottom: float
+
+    @property
+    def range_text(self) -> str:
+        return f"{number(self.bottom)} to {number(self.top)} {self.unit}".rstrip()
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
+from slamgym.errors import OutputError
 from slamgym.files import write_atomically
 from slamgym.report.content import ReportContent, Section
 from slamgym.report.page.details import details, runs_url
@@ -13,6 +14,7 @@ from slamgym.report.page.pictures import PagePicture, picture_files, write_pictu
 from slamgym.report.page.run_columns import run_columns, runs_data
 from slamgym.report.page.tables import PageTable, shown_value, table_files, write_table
 from slamgym.report.page.templates import filled, inlined
+from slamgym.study.folder import StudyFolder
 from slamgym.study.results import StudyResults
 
 PAGE = "report.html"
@@ -38,14 +40,27 @@ def write_report(content: ReportContent, results: StudyResults, folder: Path) ->
     tables/NAME.tex, .md    the same as the page has it
 
     results: those that the content is about; their runs are in the page's table, with as much about single runs as
-    there is room for. Each file is whole or as it was; a report that was there before is replaced. Raises OutputError.
+    there is room for. Each file is whole or as it was; a report that was there before is replaced. Raises OutputError,
+    also for a folder of another study, whose own report it would replace.
     """
+    check_report_folder(folder, results)
     files = list(_files(content))
     announce(folder, files)
     sections = [_written(section, folder) for section in content.sections]
     page = write_atomically(folder / PAGE, _page(content, sections, results, folder))
     remove_others(folder, files)
     return page
+
+
+def check_report_folder(folder: Path, results: StudyResults) -> None:
+    """Raise OutputError where `write_report` would: for a file, and the folder of another study. It may be missing."""
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(f"{folder}: expected a folder for the report, got a file; name another")
+    place = StudyFolder(folder)
+    if folder.resolve() != results.folder.resolve() and (place.plan.exists() or place.study.exists()):
+        raise OutputError(
+            f"{folder}: expected a folder for the report of {results.folder}, got that of another study; name another"
+        )
 
 
 def _files(content: ReportContent) -> Iterator[str]:

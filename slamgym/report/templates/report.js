@@ -1,13 +1,14 @@
 "use strict";
 
 const ROWS_A_PAGE = 50;
+const ROWS_ON_PAPER = 1000;
 /* In place of a column's number: the order of the plan. */
 const RUN = -1;
 const data = JSON.parse(document.getElementById("runs-data").textContent);
 const { columns } = data;
 const total = data.drive.values.length;
 const element = (id) => document.getElementById(id);
-const view = { rows: Uint32Array.from({ length: total }, (_, row) => row), sorted: RUN, descending: false, page: 0, open: -1 };
+const view = { rows: Uint32Array.from({ length: total }, (_, row) => row), sorted: RUN, descending: false, page: 0, rows_a_page: ROWS_A_PAGE, open: -1 };
 
 const runId = (row) => `${data.drive.words[data.drive.values[row]]}/${data.rest.words[data.rest.values[row]]}`;
 
@@ -70,7 +71,7 @@ function update() {
 function cell(column, row) {
   const td = make("td", shown(column, row));
   if (!column.words) td.className = "number";
-  if (column.heading === "outcome") td.className = td.textContent === "success" ? "success" : "failed";
+  if (column.heading === "outcome") td.className = td.textContent.match(/^(success|failed|)/)[0];
   return td;
 }
 
@@ -87,13 +88,15 @@ function line(row) {
 }
 
 function draw() {
-  const pages = Math.max(1, Math.ceil(view.rows.length / ROWS_A_PAGE));
+  const pages = Math.max(1, Math.ceil(view.rows.length / view.rows_a_page));
   view.page = Math.min(Math.max(view.page, 0), pages - 1);
-  const from = view.page * ROWS_A_PAGE;
-  document.querySelector("#runs-table tbody").replaceChildren(...Array.from(view.rows.slice(from, from + ROWS_A_PAGE), line));
+  const from = view.page * view.rows_a_page;
+  const rows = view.rows.slice(from, from + view.rows_a_page);
+  document.querySelector("#runs-table tbody").replaceChildren(...Array.from(rows, line));
   const found = view.rows.length.toLocaleString("en");
   element("count").textContent = view.rows.length === total ? `${found} runs` : `${found} of ${total.toLocaleString("en")} runs`;
-  element("place").textContent = `Page ${(view.page + 1).toLocaleString("en")} of ${pages.toLocaleString("en")}`;
+  const ends = [from + 1, from + rows.length].map((row) => row.toLocaleString("en"));
+  element("place").textContent = `Rows ${ends[0]} to ${ends[1]} of ${found}`;
   element("first").disabled = element("previous").disabled = view.page === 0;
   element("next").disabled = element("last").disabled = view.page === pages - 1;
   document.querySelector("#runs-table .pages").hidden = pages === 1;
@@ -144,13 +147,17 @@ function quoted(text) {
   return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", `'"'"'`)}'`;
 }
 
+/* A run that could not be begun has no folder; that over a recorded sequence tells itself how it is repeated. */
 function ending(row, told) {
+  const kind = data.kind.words[data.kind.values[row]];
+  if (kind === "none") return [];
   const id = runId(row);
   const link = make("a", "Its folder", { href: data.runs_url + id.split("/").map(encodeURIComponent).join("/") + "/" });
   const where = make("p", told ? "" : "There was no room in this page for its map and timeline. ");
   where.append(link, " has all its files.");
+  if (kind === "sequence") return [where];
   const repeat = make("p", "Repeat it: ");
-  repeat.append(make("code", `slamgym run --like ${quoted(data.runs_folder + id)}`));
+  repeat.append(make("code", `slamgym run --like ${quoted(data.runs_folder + id)} --out again`));
   return [where, repeat];
 }
 
@@ -169,6 +176,23 @@ function open(row) {
   view.open = row;
   if (!element("run").open) element("run").showModal();
   element("run-body").scrollTop = 0;
+}
+
+function openPicture(figure) {
+  element("picture-title").textContent = figure.querySelector("h3").textContent;
+  element("picture-body").replaceChildren(figure.querySelector("img").cloneNode());
+  element("picture").showModal();
+}
+
+/* Paper has no next page to click at. */
+function onPaper() {
+  const { page } = view;
+  Object.assign(view, { page: 0, rows_a_page: ROWS_ON_PAPER });
+  draw();
+  addEventListener("afterprint", () => {
+    Object.assign(view, { page, rows_a_page: ROWS_A_PAGE });
+    draw();
+  }, { once: true });
 }
 
 function turn(by) {
@@ -195,5 +219,12 @@ element("last").addEventListener("click", () => turn(() => Infinity));
 element("close").addEventListener("click", () => element("run").close());
 element("before").addEventListener("click", () => open(view.rows[view.rows.indexOf(view.open) - 1]));
 element("after").addEventListener("click", () => open(view.rows[view.rows.indexOf(view.open) + 1]));
+for (const figure of document.querySelectorAll(".picture")) {
+  const button = figure.querySelector(".full");
+  button.hidden = false;
+  for (const target of [button, figure.querySelector("img")]) target.addEventListener("click", () => openPicture(figure));
+}
+element("picture-close").addEventListener("click", () => element("picture").close());
+addEventListener("beforeprint", onPaper);
 element("runs-table").hidden = false;
 draw();

@@ -5,6 +5,7 @@ import pytest
 
 from slamgym.errors import ConfigError
 from slamgym.eval.plots import plot_failure_curve
+from slamgym.eval.plots.failure_curves import FailureCounts, plot_failure_curves
 from slamgym.eval.statistics import Interval
 from slamgym.types import FloatArray
 
@@ -57,6 +58,19 @@ def test_without_a_midpoint_none_is_claimed(texts_of):
 @pytest.mark.parametrize(("failed", "runs"), [([0], [1]), ([1], [1]), ([0], [0])])
 def test_one_level(failed, runs, texts_of):
     assert f"{failed[0]} of {runs[0]} runs failed" in texts_of(plot_failure_curve([0.5], failed, runs))
+
+
+def x_ticks(figure):
+    return [label.get_text() for label in figure.axes[0].get_xticklabels()]
+
+
+def test_few_levels_have_their_own_ticks():
+    assert x_ticks(plot_failure_curve([0, 1, 2.5], [0, 1, 2], [5, 5, 5])) == ["0", "1", "2.5"]
+    counts = FailureCounts(np.array([0.0, 2.0]), np.array([0, 1]), np.array([5, 5]))
+    assert x_ticks(plot_failure_curves({"a": counts, "b": counts})) == ["0", "2"]
+    crowded = [0, 0.1, 10]
+    for levels in (crowded, range(9)):
+        assert len(x_ticks(plot_failure_curve(levels, [0] * len(levels), [5] * len(levels)))) != len(levels)
 
 
 def test_many_levels_and_none(texts_of):

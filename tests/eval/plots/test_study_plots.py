@@ -105,6 +105,8 @@ def test_what_is_counted_and_what_cannot_fail_is_said():
     bars = plot_sorted_bars({"all": [0.1, np.nan]}, counted="cases").axes[0]
     assert bars.get_title(loc="left") == "all: 1 of 2 cases failed"
     assert bars.get_xlabel() == "2 cases, sorted"
+    named = plot_sorted_bars({"all": [0.1, np.nan]}, failed="without an ATE").axes[0]
+    assert [label.get_text() for label in named.get_yticklabels()][-1] == "without an ATE"
     scatter = plot_scatter({"a": [1, 2]}, [0.5, 0.9], log_y=False, counted="paths", can_fail=False)
     assert scatter.get_suptitle() == "2 paths"
     assert "failed" not in [label.get_text() for label in scatter.axes[0].get_yticklabels()]

@@ -82,9 +82,9 @@ def test_long_names_that_look_the_same_are_numbered():
 
 
 @pytest.mark.parametrize(
-    ("share", "shown"), [(1.0, "100 %"), (0.9999, "99 %"), (0.29, "29 %"), (0.0, "0 %"), (2 / 3, "66 %")]
+    ("share", "shown"), [(1.0, "100 %"), (0.9999, "99.9 %"), (0.29, "29 %"), (0.0, "0 %"), (2 / 3, "67 %")]
 )
-def test_a_percentage_is_never_rounded_up(share, shown):
+def test_a_percentage_is_100_only_when_nothing_is_missing(share, shown):
     assert percent(share) == shown
 
 

@@ -35,12 +35,12 @@ def test_a_top_view_has_gaps_losses_and_shares(texts_of):
     figure = plot_trajectory_top(drive(16)[:, :3, 3], {"a": T[:, :3, 3], "b": np.full((16, 3), np.nan)})
     texts = set(texts_of(figure))
     # 11 of 16 frames: 68.75 %.
-    assert {"a, 68 % tracked", "b, 0 % tracked", "x (m)", "y (m)", "start", "end"} <= texts
+    assert {"a, 69 % tracked", "b, 0 % tracked", "x (m)", "y (m)", "start", "end"} <= texts
     axes = figure.axes[0]
     assert axes.get_aspect() == 1.0
     crosses = [line for line in axes.get_lines() if line.get_marker() == "X"]
     assert [line.get_xydata().tolist() for line in crosses] == [[drive(16)[8, :2, 3].tolist()]]
-    (line,) = [line for line in axes.get_lines() if line.get_label() == "a, 68 % tracked"]
+    (line,) = [line for line in axes.get_lines() if line.get_label() == "a, 69 % tracked"]
     assert np.isnan(line.get_ydata()).tolist() == np.isnan(T[:, 0, 3]).tolist()
 
 

@@ -41,6 +41,19 @@ def test_pairs_that_all_agree_still_leave_room():
     assert (nothing.low, nothing.high) == pytest.approx((-half, half), rel=1e-4)
 
 
+def test_the_added_pairs_are_as_large_as_the_changes_seen():
+    graded = clustered_difference([0.2, 0.0, -0.1, 0.2, 0.0], np.arange(5))
+    # Outcomes of one size: as wide as for -1, 0 and 1, times that size.
+    signs = np.tile([1.0, 0.0, -1.0, 1.0, 0.0], 4)
+    outcomes = clustered_difference(signs, np.arange(20))
+    scaled = clustered_difference(0.3 * signs, np.arange(20))
+    assert (scaled.low, scaled.high) == pytest.approx((0.3 * outcomes.low, 0.3 * outcomes.high))
+    # By hand: n = 4 (5 paths, 5 / 4 as wide), sum of squares 0.09 of 5, that of the added pairs 2 * 0.09 / 3.
+    center = 4 * 0.06 / 6
+    half = 2.776445 * np.sqrt(((4 * 0.018 + 2 * 0.03) / 6 - center**2) / 6)
+    assert (graded.low, graded.high) == pytest.approx((center - half, center + half), rel=1e-5)
+
+
 def test_one_path_tells_nothing_of_others():
     for interval in (clustered_share([True, False], ["a", "a"]), clustered_difference([0.5, 1.0], ["a", "a"])):
         assert np.isnan([interval.low, interval.high]).all()
@@ -70,3 +83,33 @@ def test_intervals_hold_what_they_promise(paths, alike):
             0.0 in clustered_difference(a.ravel() * 1.0 - b.ravel(), groups),
         )
     assert (held / samples > 0.93).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("repeats", [1, 3, 6])
+@pytest.mark.parametrize("paths", [6, 12, 40])
+def test_the_interval_of_graded_differences_holds_what_it_promises(paths, repeats):
+    rng = np.random.default_rng(paths)
+    held, widths, samples = 0, [], 1000
+    for _ in range(samples):
+        before = 0.6 * rng.beta(0.5, 0.5, paths)
+        old, new = (rng.binomial(repeats, p, paths) / repeats for p in (before, before + 0.3))
+        interval = clustered_difference(new - old, np.arange(paths))
+        held += interval.low <= 0.3 <= interval.high
+        widths.append(interval.high - interval.low)
+    assert held / samples > 0.93
+    # Graded shares tell more than single outcomes: two pairs of size 1 would make 6 paths as wide as 1.1.
+    assert repeats < 6 or np.mean(widths) < {6: 0.7, 12: 0.4, 40: 0.2}[paths]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("alike", [(0.05, 0.95), (0.1, 0.9)])
+@pytest.mark.parametrize("paths", [6, 12, 30])
+def test_a_share_of_few_failures_on_few_paths_holds_less(paths, alike):
+    rng, held, samples = np.random.default_rng(paths), 0, 1000
+    groups = np.repeat(np.arange(paths), 24)
+    for _ in range(samples):
+        failed = rng.random((paths, 24)) < rng.beta(*alike, paths)[:, None]
+        interval = clustered_share(failed.ravel(), groups)
+        held += interval.low <= alike[0] / sum(alike) <= interval.high
+    assert held / samples > 0.8

@@ -120,6 +120,38 @@ def test_failed_runs_are_marked_by_words(report, visit):
     page = visit(report)
     said = [next(word for word in ("success", "failed", "not run") if word in text) for text in rows(page)]
     assert said == ["success", "failed", "failed", "not run"]
+    marked = page.locator("#runs-table tbody td:nth-child(3)").evaluate_all("all => all.map(td => td.className)")
+    assert marked == ["success", "failed", "failed", ""]
+
+
+def test_only_what_has_a_folder_can_be_repeated_from_it(results, visit, tmp_path):
+    recorded = replace(results, runs=results.runs.assign(sequence=[None, "data/fr1", None, None]))
+    page = visit(write_report(ReportContent("s", "", {}, (), ()), recorded, tmp_path))
+    told = {}
+    for number in (1, 2, 4):
+        page.get_by_role("button", name=f"run {number}: details").click()
+        body = page.locator("#run-body")
+        told[number] = (body.get_by_role("link", name="Its folder").count(), body.locator("code").count())
+        page.keyboard.press("Escape")
+    assert told == {1: (1, 1), 2: (1, 0), 4: (0, 0)}
+
+
+@pytest.mark.parametrize(("width", "seen"), [(390, "outcome"), (1280, "causes of losses")])
+def test_what_a_run_came_to_needs_no_scrolling(width, seen, results, visit, tmp_path):
+    many = ["multisampling_of_photogrammetrically_textured_houses", *(f"factor {k}" for k in range(8))]
+    causes = {"loss_causes.low_texture": [0, 2, 1, 0], "loss_causes.frame_gap": [0, 1, 0, 0]}
+    runs = results.runs.assign(**dict.fromkeys(many, range(4)), **causes)
+    varied = replace(results, factors=tuple(many), runs=runs)
+    page = visit(
+        write_report(ReportContent("s", "", {}, (), ()), varied, tmp_path), viewport={"width": width, "height": 800}
+    )
+    box = page.locator("#runs-table .scroll").bounding_box()
+    heading = page.locator("#runs-table thead th", has_text=seen).bounding_box()
+    assert heading["x"] + heading["width"] <= box["x"] + box["width"]
+    page.evaluate("document.querySelector('#runs-table .scroll').scrollLeft = 300")
+    assert page.locator("#runs-table tbody th").first.bounding_box()["x"] == box["x"]
+    texts = page.locator("#runs-table thead th")
+    assert texts.evaluate_all("all => all.every(th => th.scrollWidth <= th.clientWidth)")
 
 
 def test_a_run_opens_with_its_map_timeline_and_losses(report, results, visit):
@@ -139,7 +171,7 @@ def test_a_run_opens_with_its_map_timeline_and_losses(report, results, visit):
     assert strips.evaluate_all("all => all.every(image => image.complete && image.naturalWidth > 500)")
     assert dialog.locator(".losses li").first.inner_text().startswith("At 1.33 s:")
     command = dialog.locator("code").inner_text()
-    assert command == f"slamgym run --like '{results.folder}/runs/home-7/2'"
+    assert command == f"slamgym run --like '{results.folder}/runs/home-7/2' --out again"
     page.get_by_role("button", name="Next run").click()
     expect(dialog.get_by_role("heading", name="Run 3")).to_be_visible()
     page.keyboard.press("Escape")
@@ -177,6 +209,29 @@ def test_pictures_are_shown(content, results, visit, tmp_path):
     assert images.count() == 1
     assert images.evaluate_all("all => all.every(image => image.complete && image.naturalWidth > 500)")
     assert images.first.get_attribute("alt") == "How the sine goes."
+
+
+def test_a_picture_opens_in_full_size(content, results, visit, tmp_path):
+    page = visit(write_report(content, results, tmp_path), viewport={"width": 390, "height": 800})
+    small = page.locator("main img").bounding_box()["width"]
+    page.get_by_role("button", name="A wave: full size").click()
+    full = page.get_by_role("dialog", name="A wave").get_by_role("img", name="How the sine goes.")
+    assert full.bounding_box()["width"] > 1.3 * small
+    assert not overflows(page)
+    page.get_by_role("button", name="Close", exact=True).click()
+    page.locator("main img").click()
+    expect(full).to_be_visible()
+
+
+def test_all_runs_are_on_paper(results, visit, tmp_path):
+    runs = pd.concat([results.runs.iloc[:1]] * 1100, ignore_index=True)
+    page = visit(write_report(ReportContent("s", "", {}, (), ()), replace(results, runs=runs), tmp_path))
+    page.get_by_role("button", name="Next").click()
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert numbers(page) == list(range(1, 1001))
+    expect(page.locator("#place")).to_have_text("Rows 1 to 1,000 of 1,100")
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert numbers(page) == list(range(51, 101))
 
 
 def test_print_shows_all_and_no_controls(report, visit):
@@ -226,7 +281,7 @@ def test_hostile_names_are_text(study_folder, content, visit, tmp_path):
     shown = [word.replace("\x00", "\ufffd").replace("\x07", "\ufffd") for word in shown]
     assert page.locator(".headlines li").all_inner_texts() == shown
     assert page.locator("figure.table tbody td:first-child").all_inner_texts() == shown
-    assert page.locator("#runs-table tbody td:nth-child(3)").all_inner_texts() == shown
+    assert page.locator("#runs-table tbody td:nth-child(2)").all_inner_texts() == shown
     assert page.get_by_label("SLAM").locator("option").all_inner_texts()[1:] == sorted(shown)
     for number in range(1, len(HOSTILE) + 1):
         page.get_by_role("button", name=f"run {number}: details", exact=True).click()

@@ -135,6 +135,23 @@ def test_links_lead_from_another_folder_to_the_runs(content, results, tmp_path):
 def test_a_file_in_the_way_is_one_clear_error(name, content, results, tmp_path):
     (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text("mine")
-    with pytest.raises(OutputError, match=r"cannot write|writing .* failed"):
+    with pytest.raises(
+        OutputError, match=r"expected a folder for the report, got a file|cannot write|writing .* failed"
+    ):
         write_report(content, results, tmp_path / "report")
     assert (tmp_path / name).read_text() == "mine"
+
+
+@pytest.mark.parametrize("file", ["plan.json", "study.yaml"])
+def test_the_report_of_another_study_is_not_replaced(file, content, results, tmp_path):
+    (tmp_path / file).write_text("theirs")
+    with pytest.raises(OutputError, match="got that of another study; name another"):
+        write_report(content, results, tmp_path)
+    assert files(tmp_path) == {file}
+    assert write_report(content, replace(results, folder=tmp_path / "x" / ".."), tmp_path).exists()
+
+
+def test_what_one_must_know_comes_before_what_the_data_say(content, results, tmp_path):
+    text = write_report(replace(content, notices=("Not <finished>.",)), results, tmp_path).read_text()
+    assert text.index("Not &lt;finished&gt;.") < text.index(content.headlines[0])
+    assert text.count("Not &lt;finished&gt;.") == 1

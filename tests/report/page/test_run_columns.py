@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from slamgym.report.page.run_columns import outcomes, run_columns, runs_data
+from slamgym.report.page.run_columns import outcomes, run_columns, run_kinds, runs_data
 from slamgym.study.results import StudyResults
 
 
@@ -55,6 +55,26 @@ def test_figures_are_rounded_and_missing_ones_are_none():
 def test_causes_are_named_the_most_frequent_first():
     results = study(**{"loss_causes.blur": [1, np.nan, 0], "loss_causes.fast_turn": [3, 1, 0]})
     assert shown(results, "causes of losses") == ["fast turn (3), blur", "fast turn", "-"]
+
+
+def test_causes_have_the_words_of_the_sections():
+    results = study(**{"loss_causes.dark": [1, 0], "loss_causes.frame_gap": [0, 2]})
+    assert shown(results, "causes of losses") == ["darkness", "gap between frames (2)"]
+
+
+def test_what_a_run_came_to_stands_before_what_was_varied():
+    results = study(["speed", "stride"], speed=[1, 2], stride=[0, 1], dataset=["a", "b"], completion=1.0,
+        loss_count=0, ate_rmse_m=0.1, loops_closed=1, repeat=[1, 2])  # fmt: skip
+    assert [c.heading for c in run_columns(results)] == [
+        "path", "outcome", "completion (%)", "losses", "ATE (m)", "causes of losses", "speed (m/s)",
+        "stride (frames left out)", "repeat", "dataset", "loops closed",
+    ]  # fmt: skip
+
+
+def test_how_a_run_is_repeated_depends_on_what_it_was():
+    runs = pd.DataFrame({"status": ["ok", "lost", "not_run"], "sequence": [None, "data/fr1", "data/fr1"]})
+    assert run_kinds(runs) == ["drive", "sequence", "none"]
+    assert run_kinds(runs[["status"]]) == ["drive", "drive", "none"]
 
 
 @pytest.mark.parametrize(("repeat", "is_told"), [([1, 1], False), ([1, 2], True)])

@@ -118,6 +118,12 @@ def test_curves_are_cut_where_nothing_is_known_and_begin_at_zero():
     # From 10 down to -30 degrees a second, of a strip of 100.
     assert (turn.label, turn.top, turn.bottom) == ("turn rate", 10.0, -30.0)
     assert "500,100" in turn.lines[0].split()
+    assert turn.range_text == "-30 to 10 °/s"
+
+
+def test_ranges_are_plain_numbers():
+    curve = next(iter(timeline(run(tracked_points=np.full(N, 1010.0))).curves))
+    assert curve.range_text == "0 to 1010"
 
 
 def test_no_peak_of_a_long_drive_is_thinned_out():
