@@ -40,8 +40,8 @@ class Report:
     def __call__(self) -> None:
         if self.fail_on_regression and self.baseline is None:
             raise ConfigError("--fail-on-regression: expected a baseline to compare with, got none: name its folder")
-        study = _opened(self.study)
         with told_warnings():
+            study = _opened(self.study)
             if self.baseline is None:
                 self._report(study)
             else:

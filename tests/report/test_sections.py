@@ -244,7 +244,8 @@ def test_facts_tell_round_trips_and_loops(column, value):
     back = {column: value, "loops_closed": [0, 1, 2, 0, 0, 0]}
     results = changed(made, **back)
     facts = study_facts(results, judged_runs(results))
-    assert facts["Round trips"] == "3 drives back to the start; with loop closing on, a loop was seen to close in 2 of 6 runs"
+    told = "3 drives back to the start; with loop closing on, a loop was seen to close in 2 of 6 runs"
+    assert facts["Round trips"] == told
     assert facts["Shown to the SLAM"] == "36 m in 48 s, 1,440 frames fed"
     assert facts["Repeats"] == "2"
     assert facts["Paths"] == "3 paths of dataset 0 in 1 house"
