@@ -110,10 +110,10 @@ def figures(runs: pd.DataFrame) -> dict[str, Any]:
         **_interval_columns("failed share", share),
         FAILED_LAST: _median(error_m, failed, "penalise"),
         SUCCESSFUL: _median(error_m, failed, "drop"),
-        "median RPE, successful (m)": _median(numbers(runs, "rpe_trans_rmse_m"), failed, "drop"),
-        "median RPE, successful (deg)": _median(numbers(runs, "rpe_rot_mean_deg"), failed, "drop"),
         "mean completion": _mean(numbers(runs, "completion")),
         **_loss_rates(runs),
+        "median RPE, successful (m)": _median(numbers(runs, "rpe_trans_rmse_m"), failed, "drop"),
+        "median RPE, successful (deg)": _median(numbers(runs, "rpe_rot_mean_deg"), failed, "drop"),
     }
 
 

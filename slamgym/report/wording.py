@@ -22,9 +22,13 @@ def number(value: float) -> str:
 
 
 def percent_range(interval: Interval) -> str:
-    """The ends of an interval of shares: "12 to 40 %"."""
-    low, high = (round(100 * end) + 0 for end in (interval.low, interval.high))
-    return f"{low} to {high} %"
+    """The ends of an interval of shares or of their differences: "12 to 40 %"; "0.3 to 40 %": it does not hold 0."""
+    return f"{_percent_end(interval.low)} to {_percent_end(interval.high)} %"
+
+
+def _percent_end(end: float) -> str:
+    rounded = round(100 * end) + 0
+    return f"{rounded}" if rounded or abs(end) < 5e-4 else f"{100 * end:.1f}"
 
 
 def ratio_range(interval: Interval) -> str:

@@ -47,7 +47,8 @@ def test_a_share_is_never_all_or_nothing_unless_it_is(share, text):
 
 def test_intervals_and_lists():
     assert percent_range(Interval(0.1, -0.061, 0.0836)) == "-6 to 8 %"
-    assert percent_range(Interval(0.0, -0.001, 0.001)) == "0 to 0 %"
+    assert percent_range(Interval(0.0, -0.0001, 0.0001)) == "0 to 0 %"
+    assert percent_range(Interval(0.5, 0.003, 0.86)) == "0.3 to 86 %"
     assert number_range(Interval(0.9, 0.81, 1.14)) == "0.81 to 1.1"
     assert number_range(Interval(0.9, 0.81, float("inf"))) == "0.81 or more"
     assert number_range(Interval(0.9, float("-inf"), 1.14)) == "1.1 or less"
