@@ -44,7 +44,8 @@ def test_each_can_be_planned_in_every_size(name):
     sizes = plans(name)
     assert [len(runs) for runs in sizes] == sorted(len(runs) for runs in sizes)
     for runs in sizes:
-        assert {run.drive.agent for run in runs} == {"patrol"}  # so that loops can be closed
+        # They return to their start; where loop closing is what matters, they see it again from the same side.
+        assert {run.drive.agent for run in runs} == {"lap" if name == "mva2019" else "patrol"}
         assert {run.slam["slam"] for run in runs} == {"orbslam3"}
         # Seeds from 1,000,000 on are those that the vocabulary was trained on.
         assert all(int(run.drive.params["scene"].rpartition(":")[2]) < 1_000_000 for run in runs)
@@ -59,7 +60,7 @@ def test_its_description_is_a_sentence_for_people(name):
 
 
 def test_the_quick_one_is_quick():
-    assert estimate(plans("quick")[0]).seconds(2) < 4 * 60
+    assert estimate(plans("quick")[0]).seconds(2) < 5 * 60
 
 
 def test_the_papers_experiment_is_whole():
@@ -81,7 +82,9 @@ def test_the_papers_experiment_takes_recorded_sequences(sequences):
 
 def test_what_the_computer_does_is_measured_one_run_at_a_time():
     assert read_study("computer").max_workers == 1
-    assert {run.busy_processes for run in plans("computer")[0]} == {0, 2, 4}
+    small, full = plans("computer")
+    assert {run.busy_processes for run in small} == {0, 4}
+    assert {run.busy_processes for run in full} == {0, 1, 2, 4, 8}
 
 
 def test_small_studies_need_no_furniture_of_others():
