@@ -76,10 +76,12 @@ def _run(request: bytes, results_fd: int, time_s: float) -> tuple[int | None, st
 
 
 def _search_path() -> list[str]:
-    """Where this process finds modules; without the working directory when that has been deleted."""
+    """Where this process finds modules; only absolute paths when the working directory has been deleted: Python does
+    not start with others then, and an editable installation adds one that is no folder at all.
+    """
     with suppress(FileNotFoundError):
         return [path or str(Path.cwd()) for path in sys.path]
-    return [path for path in sys.path if path]
+    return [path for path in sys.path if Path(path).is_absolute()]
 
 
 def _last_line(errors: BinaryIO) -> str:
