@@ -1,17 +1,17 @@
 """Rank correlations between attributes of paths and what a SLAM achieved on them."""
 
 import math
-from typing import Literal, NamedTuple
+from typing import NamedTuple, get_args
 
 import numpy as np
 import pandas as pd
 from scipy import stats
-from statsmodels.stats.multitest import multipletests
 
 from slamgym.errors import ConfigError, unknown_word
+from slamgym.eval.statistics.multiple import Correction, corrected
 from slamgym.types import FloatArray
 
-CORRECTIONS = ("holm", "fdr_bh")
+CORRECTIONS = get_args(Correction)
 _EXACT_UP_TO = 7
 """Spearman's p-value comes from all n! orders up to this n; above, from Student's t."""
 
@@ -26,9 +26,7 @@ class _Pair(NamedTuple):
     kendall_p: float = np.nan
 
 
-def correlations(
-    attributes: pd.DataFrame, metrics: pd.DataFrame, correction: Literal["holm", "fdr_bh"] = "holm"
-) -> pd.DataFrame:
+def correlations(attributes: pd.DataFrame, metrics: pd.DataFrame, correction: Correction = "holm") -> pd.DataFrame:
     """Spearman's rho and Kendall's tau-b of each attribute with each metric, one row a pair.
 
     attributes, metrics: numbers, one row a path, both with the same index. Rows must be independent of each other:
@@ -38,9 +36,8 @@ def correlations(
     The p-values are two-sided. Rows where either value is NaN are left out of that pair, and `n` counts the others. A
     pair without two different values on both sides has NaN, and is not counted as a test.
 
-    correction: "holm" bounds the chance of any false finding, "fdr_bh" (Benjamini and Hochberg) the expected share of
-    false ones among the findings. Each coefficient's p-values are one family, all pairs of the table: decide for one
-    coefficient before looking, since choosing the better of the two for each pair is not corrected for.
+    correction: see `multiple.corrected`. Each coefficient's p-values are one family, all pairs of the table: decide for
+    one coefficient before looking, since choosing the better of the two for each pair is not corrected for.
     Raises ConfigError.
     """
     if correction not in CORRECTIONS:
@@ -51,7 +48,7 @@ def correlations(
     pairs = [_pair(attributes[a], metrics[m]) for a in attributes.columns for m in metrics.columns]
     table = pd.DataFrame(pairs, columns=_Pair._fields)
     for at, name in ((5, "spearman"), (8, "kendall")):
-        table.insert(at, f"{name}_p_corrected", _corrected(table[f"{name}_p"].to_numpy(np.float64), correction))
+        table.insert(at, f"{name}_p_corrected", corrected(table[f"{name}_p"].to_numpy(np.float64), correction))
     return table
 
 
@@ -75,11 +72,3 @@ def _spearman(x: FloatArray, y: FloatArray) -> tuple[float, float]:
     rho = stats.pearsonr(x, y, method=exact) if len(x) <= _EXACT_UP_TO else stats.spearmanr(x, y)
     least = 2 / math.factorial(len(x))
     return float(rho.statistic), max(float(rho.pvalue), least)
-
-
-def _corrected(p: FloatArray, correction: str) -> FloatArray:
-    tested = ~np.isnan(p)
-    corrected = np.full_like(p, np.nan)
-    if tested.any():
-        corrected[tested] = multipletests(p[tested], method=correction)[1]
-    return corrected

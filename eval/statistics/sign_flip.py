@@ -1,9 +1,8 @@
-"""Is a mean difference over paths more than chance, and are several of them?"""
+"""Is a mean difference over paths more than chance?"""
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
-from statsmodels.stats.multitest import multipletests
 
 from slamgym.errors import ConfigError
 from slamgym.types import FloatArray
@@ -32,16 +31,6 @@ def sign_flip_p(differences: ArrayLike) -> float:
         rng=0,
     )
     return float(test.pvalue)
-
-
-def corrected_by_holm(p_values: ArrayLike) -> FloatArray:
-    """p-values (T,) of T tests so that the chance of any false finding below 0.05 is 0.05; NaN is no test."""
-    p = np.asarray(p_values, dtype=np.float64)
-    tested = ~np.isnan(p)
-    corrected = np.full_like(p, np.nan)
-    if tested.any():
-        corrected[tested] = multipletests(p[tested], method="holm")[1]
-    return corrected
 
 
 def _checked(differences: ArrayLike) -> FloatArray:

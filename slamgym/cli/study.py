@@ -24,7 +24,7 @@ from slamgym.study.pool import cores
 from slamgym.study.results import StudyResults
 from slamgym.study.run import check_workers, run_study
 from slamgym.study.spec import StudySpec, read_study
-from slamgym.study.table import NOT_RUN
+from slamgym.study.table import was_run
 
 PLAIN_S = 30.0
 """Between two lines about the progress where there is no terminal."""
@@ -131,7 +131,7 @@ def _duration(seconds: float) -> str:
 
 
 def _remarks(done: StudyResults) -> Iterator[str]:
-    reasons = done.runs["failure"][done.runs["status"] == NOT_RUN].value_counts()
+    reasons = done.runs["failure"][~was_run(done.runs)].value_counts()
     for failure, count in reasons.head(LINES_OF_REASONS).items():
         yield f"{count} runs could not be run, and are tried again by the same line: {failure}"
     if more := reasons.iloc[LINES_OF_REASONS:].sum():

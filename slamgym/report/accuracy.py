@@ -8,8 +8,9 @@ import pandas as pd
 
 from slamgym.eval.plots import plot_cumulative, plot_sorted_bars
 from slamgym.eval.statistics import FailureThreshold, failure_threshold
+from slamgym.report.columns import numbers
 from slamgym.report.content import DataTable, Picture, Section
-from slamgym.report.judged import FAILED, JudgedRuns, numbers
+from slamgym.report.judged import FAILED, JudgedRuns
 from slamgym.report.levels import Factor
 from slamgym.report.pairs import furthest, ratio_text
 from slamgym.report.shares import LevelComparison

@@ -6,8 +6,9 @@ import numpy as np
 import pandas as pd
 
 from slamgym.eval.plots import plot_stacked_bars, printable
+from slamgym.report.columns import numbers
 from slamgym.report.content import DataTable, Picture, Section
-from slamgym.report.judged import JudgedRuns, numbers
+from slamgym.report.judged import JudgedRuns
 from slamgym.report.levels import Factor
 from slamgym.report.wording import count, listed, percent, sentence
 

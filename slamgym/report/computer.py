@@ -3,8 +3,9 @@
 import numpy as np
 import pandas as pd
 
+from slamgym.report.columns import numbers
 from slamgym.report.content import DataTable, Section
-from slamgym.report.judged import JudgedRuns, numbers
+from slamgym.report.judged import JudgedRuns
 
 ASKED_BY = frozenset({"slam_sync", "busy_processes", "slam"})
 """Factors that make the time for a frame a question of the study."""

@@ -6,12 +6,13 @@ from functools import partial
 import numpy as np
 import pandas as pd
 from scipy import stats
-from statsmodels.stats.multitest import multipletests
 
 from slamgym.eval.plots import RankCorrelation, plot_scatter
 from slamgym.eval.statistics import correlations
+from slamgym.eval.statistics.multiple import corrected
+from slamgym.report.columns import numbers
 from slamgym.report.content import DataTable, Picture, Section
-from slamgym.report.judged import JudgedRuns, left_out_text, numbers, of_complete_paths
+from slamgym.report.judged import JudgedRuns, left_out_text, of_complete_paths
 from slamgym.report.shares import FEWEST_PATHS
 from slamgym.report.wording import sentence
 from slamgym.types import FloatArray
@@ -89,11 +90,7 @@ def _within_paths(judged: JudgedRuns) -> pd.DataFrame:
         for m in metrics.columns
     ]
     table = pd.DataFrame(rows)
-    tested = table["p"].notna()
-    corrected = np.full(len(table), np.nan)
-    if tested.any():
-        corrected[tested] = multipletests(table["p"][tested], method="holm")[1]
-    return table.assign(p=corrected)
+    return table.assign(p=corrected(table["p"]))
 
 
 def _within(attribute: "pd.Series[float]", metric: "pd.Series[float]") -> dict[str, float]:

@@ -8,12 +8,13 @@ import pandas as pd
 import yaml
 
 from slamgym.eval.plots import printable
-from slamgym.report.judged import FAILED, JudgedRuns, numbers, shared_houses, texts
+from slamgym.report.columns import numbers, texts
+from slamgym.report.judged import FAILED, JudgedRuns, shared_houses
 from slamgym.report.levels import SI_UNITS, level_name, title_and_unit
 from slamgym.report.wording import count, listed, number
 from slamgym.study.folder import StudyFolder
 from slamgym.study.results import StudyResults
-from slamgym.study.table import NOT_RUN
+from slamgym.study.table import was_run
 from slamgym.types import FloatArray
 
 MOST_REASONS = 3
@@ -47,7 +48,7 @@ def _runs_text(results: StudyResults) -> str:
 
 def _reasons(runs: pd.DataFrame) -> Iterator[str]:
     """How many runs could not be run, and the reasons, the most frequent first."""
-    not_run = runs[texts(runs, "status") == NOT_RUN]
+    not_run = runs[~was_run(runs)]
     counts = texts(not_run, "failure").value_counts()
     for reason, n in counts.head(MOST_REASONS).items():
         yield f"{count(int(n), 'run')}: {printable(str(reason)) or 'no reason given'}"

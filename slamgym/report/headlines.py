@@ -5,13 +5,13 @@ from collections.abc import Iterator, Sequence
 from slamgym.eval.statistics import FailureThreshold, clustered_share
 from slamgym.report.causes import causes_text
 from slamgym.report.failures import trend_text
-from slamgym.report.judged import JudgedRuns, left_out_text, shared_houses, texts
+from slamgym.report.judged import JudgedRuns, left_out_text, shared_houses
 from slamgym.report.levels import Factor, find_factors, with_levels
 from slamgym.report.pairs import counts_text, difference_text, furthest, ratio_text
 from slamgym.report.shares import FEWEST_PATHS, LevelComparison, Trend
 from slamgym.report.wording import confidence, count, number, percent, percent_range, sentence
 from slamgym.study.results import StudyResults
-from slamgym.study.table import NOT_RUN
+from slamgym.study.table import was_run
 
 ALWAYS_TOLD = "loop_closure"
 """A factor of which people ask even where nothing is seen."""
@@ -58,7 +58,7 @@ def _not_run(results: StudyResults, judged: JudgedRuns) -> Iterator[str]:
 def _levels_not_run(results: StudyResults) -> Iterator[str]:
     """The levels that the rest is silent about, as none of their runs could be started."""
     runs = results.runs.reset_index(drop=True)
-    not_run = texts(runs, "status") == NOT_RUN
+    not_run = ~was_run(runs)
     for factor in (factor for name in results.factors for factor in find_factors(runs, [name])):
         levels = with_levels(runs, [factor])[factor.column]
         for level in factor.levels:

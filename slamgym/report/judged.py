@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from slamgym.report.columns import numbers, places, texts
 from slamgym.report.levels import Factor, find_factors, tied_names, with_columns, with_levels
 from slamgym.report.wording import count
 from slamgym.study.results import StudyResults
-from slamgym.study.table import NOT_RUN
-from slamgym.types import FloatArray
+from slamgym.study.table import succeeded, was_run
 
 FAILED = "lost at least once, not tracked to the end, or tracked for less than half of the frames"
 """What a failed run is, in words: not a success of docs/metrics.md."""
@@ -83,7 +83,7 @@ def shared_houses(judged: JudgedRuns) -> int:
 def judged_runs(results: StudyResults) -> JudgedRuns:
     """All runs of the study that were not `not_run`."""
     planned = results.runs.reset_index(drop=True)
-    runs = planned[planned["status"] != NOT_RUN] if "status" in planned else planned
+    runs = planned[was_run(planned)]
     # Of an unfinished study the rows may happen to change two factors together that the others will tell apart.
     is_finished = len(planned) >= results.planned
     tied = tied_names(planned, results.factors) if is_finished else [[name] for name in results.factors]
@@ -92,29 +92,12 @@ def judged_runs(results: StudyResults) -> JudgedRuns:
     return JudgedRuns(table, _cells(table, factors), factors)
 
 
-def numbers(table: pd.DataFrame, column: str) -> FloatArray:
-    """A column as float64, NaN where it has no number or the table has no such column."""
-    if column not in table:
-        return np.full(len(table), np.nan)
-    return pd.to_numeric(table[column], errors="coerce").to_numpy(np.float64, na_value=np.nan)
-
-
-def texts(table: pd.DataFrame, column: str) -> "pd.Series[str]":
-    """A column as text, "" where it has none or the table has no such column."""
-    if column not in table:
-        return pd.Series("", index=table.index, dtype=object)
-    return table[column].astype(object).where(table[column].notna(), "").astype(str)
-
-
 def _with_outcome(runs: pd.DataFrame) -> pd.DataFrame:
-    failed = ~texts(runs, "success").eq("True").to_numpy(np.bool_)
+    failed = ~succeeded(runs).to_numpy(np.bool_)
     ate = numbers(runs, "ate_rmse_m")
-    dataset, path = texts(runs, "dataset"), texts(runs, "path")
-    # Two datasets may well have sequences of one name.
-    alike = len(set(zip(dataset, path, strict=True))) > path.nunique()
-    place = dataset + ": " + path if alike else path
-    columns = {"failed": failed, "error_m": np.where(failed, np.inf, ate), "place": place, "dataset": dataset}
-    return with_columns(runs, columns | {"path": path} | {name: numbers(runs, name) for name in _MEDIANS})
+    columns = {"failed": failed, "error_m": np.where(failed, np.inf, ate), "place": places([runs])[0]}
+    named = {name: texts(runs, name) for name in ("dataset", "path")}
+    return with_columns(runs, columns | named | {name: numbers(runs, name) for name in _MEDIANS})
 
 
 def _cells(table: pd.DataFrame, factors: tuple[Factor, ...]) -> pd.DataFrame:

@@ -8,9 +8,10 @@ import pandas as pd
 from slamgym.eval.plots import printable
 from slamgym.eval.robustness import average
 from slamgym.eval.statistics import Interval, clustered_share
+from slamgym.report.columns import numbers
 from slamgym.report.content import DataTable, Section
 from slamgym.report.facts import driven
-from slamgym.report.judged import JudgedRuns, numbers, of_complete_paths
+from slamgym.report.judged import JudgedRuns, of_complete_paths
 from slamgym.types import BoolArray, FloatArray
 
 FAILED_LAST = "median ATE, failed last (m)"

@@ -51,9 +51,9 @@ def succeeded(runs: pd.DataFrame) -> "pd.Series[bool]":
     return runs["success"].eq(True) if "success" in runs else pd.Series(False, runs.index)
 
 
-def judged(runs: pd.DataFrame) -> pd.DataFrame:
-    """The runs that say something of their SLAM: those that could be run."""
-    return runs[runs["status"] != NOT_RUN]
+def was_run(runs: pd.DataFrame) -> "pd.Series[bool]":
+    """Of each run whether it could be run, and so says something of its SLAM."""
+    return runs["status"].ne(NOT_RUN) if "status" in runs else pd.Series(False, runs.index)
 
 
 def _left_out(_: str, error: ConfigError) -> None:
@@ -68,7 +68,7 @@ def current_table(
     on_damaged: called with the id of each of these whose folder cannot be read, and why; it has no row.
     """
     table = read_table(folder.table)
-    new = sorted((folder.finished_runs() - set(judged(table)["run_id"])).intersection(plan.run_ids))
+    new = sorted((folder.finished_runs() - set(table["run_id"][was_run(table)])).intersection(plan.run_ids))
     return joined(table, _rows(folder, new, on_damaged), plan)
 
 

@@ -11,12 +11,12 @@ from slamgym.study.folder import Plan, StudyFolder, write_plan
 from slamgym.study.planned import PlannedDrive, PlannedRun
 from slamgym.study.table import (
     joined,
-    judged,
     not_run_row,
     open_study,
     read_table,
     run_row,
     succeeded,
+    was_run,
     write_table,
 )
 
@@ -188,5 +188,5 @@ def test_a_damaged_run_is_left_out_with_a_warning(tmp_path, name, content):
 def test_what_could_not_be_run_is_neither_judged_nor_a_success():
     runs = pd.DataFrame({"status": ["ok", "not_run", "lost"], "success": [True, None, False]})
     assert succeeded(runs).tolist() == [True, False, False]
-    assert judged(runs)["status"].tolist() == ["ok", "lost"]
+    assert runs["status"][was_run(runs)].tolist() == ["ok", "lost"]
     assert succeeded(pd.DataFrame({"status": ["ok"]})).tolist() == [False]

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from slamgym.eval.statistics.sign_flip import corrected_by_holm
+from slamgym.eval.statistics.multiple import corrected
 from slamgym.report.comparison.differences import SIGNIFICANT
 from slamgym.types import FloatArray
 
@@ -29,4 +29,4 @@ def more_failures_p(pairs: pd.DataFrame) -> FloatArray:
     """
     new, baseline = (pairs[f"runs.{side}"].to_numpy(np.int64) for side in ("new", "baseline"))
     failed, failed_before = new - pairs["successes.new"], baseline - pairs["successes.baseline"]
-    return corrected_by_holm(stats.hypergeom.sf(failed - 1, new + baseline, failed + failed_before, new))
+    return corrected(stats.hypergeom.sf(failed - 1, new + baseline, failed + failed_before, new))

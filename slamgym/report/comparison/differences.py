@@ -16,7 +16,8 @@ import pandas as pd
 
 from slamgym.eval.statistics import Interval, bootstrap_interval
 from slamgym.eval.statistics.clustered import clustered_difference
-from slamgym.eval.statistics.sign_flip import corrected_by_holm, sign_flip_p
+from slamgym.eval.statistics.multiple import corrected
+from slamgym.eval.statistics.sign_flip import sign_flip_p
 from slamgym.report.comparison.metrics import ATE, METRICS, SHARES, Metric
 from slamgym.types import FloatArray
 
@@ -77,7 +78,7 @@ def metric_changes(pairs: pd.DataFrame) -> tuple[MetricChange, ...]:
     changes = [metric_change(pairs, metric) for metric in METRICS]
     judged = [k for k, change in enumerate(changes) if change.metric.tolerance is not None]
     p_values = np.array([change.p for change in changes])
-    p_values[judged] = corrected_by_holm(p_values[judged])
+    p_values[judged] = corrected(p_values[judged])
     return tuple(replace(one, p=float(p)) for one, p in zip(changes, p_values, strict=True))
 
 

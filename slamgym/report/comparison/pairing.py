@@ -9,11 +9,11 @@ import pandas as pd
 from slamgym.errors import ConfigError
 from slamgym.eval.statistics import median_over_repeats
 from slamgym.params import DriveParams
+from slamgym.report.columns import numbers, places
 from slamgym.report.comparison.metrics import ATE, METRICS, SUCCESS, TIME
-from slamgym.report.judged import numbers, texts
 from slamgym.report.levels import level_name
 from slamgym.study.results import StudyResults
-from slamgym.study.table import NOT_RUN
+from slamgym.study.table import succeeded, was_run
 
 DRIVE_NAMES = (*DriveParams.model_fields, "agent", "max_episode_steps")
 SIDES = ("new", "baseline")
@@ -46,7 +46,8 @@ class Pairing:
 
 def pair_studies(new: StudyResults, baseline: StudyResults) -> Pairing:
     """Pair the runs of both studies; raises ConfigError, in one line, where none has a partner."""
-    begun = dict(zip(SIDES, _with_places([_begun(new), _begun(baseline)]), strict=True))
+    tables = [_begun(new), _begun(baseline)]
+    begun = {side: runs.assign(place=place) for side, runs, place in zip(SIDES, tables, places(tables), strict=True)}
     common, own = _factors(new, baseline)
     keys = ["place", *common]
     texts = {side: _with_texts(runs, [*common, *own[side]]) for side, runs in begun.items()}
@@ -83,7 +84,7 @@ def some_of(values: Sequence[str]) -> str:
 
 
 def _begun(study: StudyResults) -> pd.DataFrame:
-    runs = study.runs[study.runs["status"] != NOT_RUN]
+    runs = study.runs[was_run(study.runs)]
     if runs.empty:
         raise ConfigError(f"compare: expected finished runs in {study.folder}, got none; run the study first")
     return runs
@@ -104,15 +105,6 @@ def _factors(new: StudyResults, baseline: StudyResults) -> tuple[list[str], dict
     return common, own
 
 
-def _with_places(tables: Sequence[pd.DataFrame]) -> list[pd.DataFrame]:
-    """The paths by their names; with their datasets where one name stands for paths of two of them."""
-    datasets = [texts(runs, "dataset") for runs in tables]
-    names = [texts(runs, "path") for runs in tables]
-    ambiguous = any(len(set(zip(d, p, strict=True))) > p.nunique() for d, p in zip(datasets, names, strict=True))
-    places = [d + ": " + p for d, p in zip(datasets, names, strict=True)] if ambiguous else names
-    return [runs.assign(place=place) for runs, place in zip(tables, places, strict=True)]
-
-
 def _with_texts(runs: pd.DataFrame, factors: Sequence[str]) -> pd.DataFrame:
     """The same texts for the same levels, whether a column holds numbers or texts."""
     codes = {name: pd.factorize(runs[name], use_na_sentinel=False) for name in factors}
@@ -121,7 +113,7 @@ def _with_texts(runs: pd.DataFrame, factors: Sequence[str]) -> pd.DataFrame:
 
 def _settings(runs: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     """One row a path and its levels, the repeats brought together."""
-    success = texts(runs, SUCCESS.name).eq("True").to_numpy(np.bool_)
+    success = succeeded(runs).to_numpy(np.bool_)
     values = pd.DataFrame({metric.name: numbers(runs, metric.name) for metric in METRICS}, index=runs.index)
     values = values.assign(**{SUCCESS.name: success.astype(np.float64)})
     ways = dict.fromkeys(values, "mean") | {TIME.name: "median"}

@@ -14,7 +14,6 @@ from slamgym.eval.plots.names import percent
 from slamgym.report.causes import told
 from slamgym.report.page.pictures import data_url
 from slamgym.report.page.repeat import replay_line
-from slamgym.report.page.run_columns import is_success
 from slamgym.report.page.run_files import RunFiles, read_run
 from slamgym.report.page.run_map import run_map
 from slamgym.report.page.tables import shown_value
@@ -22,6 +21,7 @@ from slamgym.report.page.templates import filled
 from slamgym.report.page.timeline import timeline
 from slamgym.study.loss_views import LOSSES
 from slamgym.study.results import StudyResults
+from slamgym.study.table import succeeded
 
 ROOM = 15_000_000
 """Bytes of the page that runs may take."""
@@ -69,7 +69,7 @@ class Detail:
 def details(results: StudyResults, page_folder: Path) -> Iterator[Detail]:
     """Of as many runs as there is room for, those that failed first; the table has all of them."""
     room = ROOM
-    failed_first = np.argsort(is_success(results.runs).to_numpy(), kind="stable")[:MOST_RUNS].tolist()
+    failed_first = np.argsort(succeeded(results.runs).to_numpy(), kind="stable")[:MOST_RUNS].tolist()
     run_ids, drive_ids = (results.runs[name].astype(str).tolist() for name in ("run_id", "drive_id"))
     for row in failed_first:
         folder = results.folder / "runs" / run_ids[row]

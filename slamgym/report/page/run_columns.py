@@ -11,7 +11,7 @@ from slamgym.report.causes import PREFIX, told
 from slamgym.report.levels import level_name, title_and_unit
 from slamgym.report.page.tables import NOTHING, shown_value
 from slamgym.study.results import StudyResults
-from slamgym.study.table import NOT_RUN
+from slamgym.study.table import NOT_RUN, succeeded, was_run
 from slamgym.types import IntArray
 
 FIGURES = {
@@ -91,7 +91,7 @@ def run_columns(results: StudyResults) -> list[RunColumn]:
 def run_kinds(runs: pd.DataFrame) -> list[str]:
     """Of each run "drive", "sequence" where its images were recorded by somebody, "none" where it has no folder."""
     recorded = runs["sequence"].notna() if "sequence" in runs else pd.Series(False, runs.index)
-    return list(np.select([runs["status"] == NOT_RUN, recorded], ["none", "sequence"], "drive"))
+    return list(np.select([~was_run(runs), recorded], ["none", "sequence"], "drive"))
 
 
 def outcomes(runs: pd.DataFrame) -> list[str]:
@@ -101,15 +101,8 @@ def outcomes(runs: pd.DataFrame) -> list[str]:
     words = status.map(OUTCOMES).fillna("failed: " + status)
     words[status == "ok"] = "failed: tracked too little"
     words[(status == "ok") & (losses > 0)] = "failed: lost for a time"
-    words[is_success(runs)] = "success"
+    words[succeeded(runs)] = "success"
     return list(words)
-
-
-def is_success(runs: pd.DataFrame) -> "pd.Series[bool]":
-    """Whether each run succeeded; one that could not be run has not."""
-    if "success" not in runs:
-        return pd.Series(False, runs.index)
-    return runs["success"].isin([True, "True"]) & (runs["status"] != NOT_RUN)
 
 
 def loss_causes(runs: pd.DataFrame) -> list[str | None]:
