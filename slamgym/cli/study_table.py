@@ -8,7 +8,7 @@ from rich.table import Table
 
 from slamgym.eval.plots.names import printable, shorten
 from slamgym.eval.robustness import average
-from slamgym.report.levels import Factor, find_factors, with_levels
+from slamgym.report.levels import Factor, study_factors, with_levels
 from slamgym.study.results import StudyResults
 from slamgym.study.table import succeeded, was_run
 from slamgym.tables import PERCENT, figures_table
@@ -31,7 +31,7 @@ COLUMNS: dict[str, tuple[str, str]] = {
 def level_table(done: StudyResults) -> Table:
     """All runs, then those at each level of the first factors; without those that could not be run."""
     runs = done.runs[was_run(done.runs)]
-    factors = find_factors(runs, done.factors)[:FACTORS]
+    factors = study_factors(done)[:FACTORS]
     runs = with_levels(runs, factors)
     rows = [_row("all", runs)]
     for factor in factors:

@@ -83,8 +83,7 @@ class CaseResult:
             rarer = self._listed(helps)
             return f"{self.name} vanishes with none of these, it is rarer with {rarer}; {self._unchanged()}"
         if unconfirmed := self._with_verdict(UNCONFIRMED):
-            seen = self._listed(unconfirmed)
-            return f"{self.name} is undecided: it hangs on where the frames fall: {seen}; {self._unchanged()}"
+            return f"{self.name} is undecided: {self._why()}: {self._listed(unconfirmed)}; {self._unchanged()}"
         if not self.judgement.is_decisive:
             return f"{self.name} comes too rarely to tell, unchanged {control}: take more repeats"
         return f"{self.name} vanishes with none of these {len(self.judgement.changes)} changes; unchanged {control}"
@@ -119,6 +118,13 @@ class CaseResult:
     def _listed(self, findings: Iterable[Finding]) -> str:
         """Changes in words, each with its counts."""
         return " or with ".join(f"{one.name} ({_counts(one.count, self.confirmed(one.name))})" for one in findings)
+
+    def _why(self) -> str:
+        """Why the changes that were credited are not confirmed."""
+        assert self.confirmation is not None
+        if self.confirmation.changes or not self.confirmation.unchanged.lost:
+            return "it hangs on where the frames fall"
+        return "over other frames it comes too rarely to tell, take more repeats"
 
     def _unchanged(self) -> str:
         assert self.judgement is not None

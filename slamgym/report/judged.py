@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from slamgym.report.columns import numbers, places, texts
-from slamgym.report.levels import Factor, find_factors, tied_names, with_columns, with_levels
+from slamgym.report.levels import Factor, study_factors, with_columns, with_levels
 from slamgym.report.wording import count
 from slamgym.study.results import StudyResults
 from slamgym.study.table import succeeded, was_run
@@ -84,10 +84,7 @@ def judged_runs(results: StudyResults) -> JudgedRuns:
     """All runs of the study that were not `not_run`."""
     planned = results.runs.reset_index(drop=True)
     runs = planned[was_run(planned)]
-    # Of an unfinished study the rows may happen to change two factors together that the others will tell apart.
-    is_finished = len(planned) >= results.planned
-    tied = tied_names(planned, results.factors) if is_finished else [[name] for name in results.factors]
-    factors = find_factors(runs, results.factors, tied)
+    factors = study_factors(results)
     table = with_levels(_with_outcome(runs), factors)
     return JudgedRuns(table, _cells(table, factors), factors)
 

@@ -11,6 +11,8 @@ import numpy as np
 import pandas as pd
 
 from slamgym.eval.plots import printable
+from slamgym.study.results import StudyResults
+from slamgym.study.table import was_run
 from slamgym.types import FloatArray, IntArray
 
 NAMES = {
@@ -105,6 +107,15 @@ def level_name(value: Any) -> str:
     if isinstance(value, (int, float, np.number)):
         return f"{float(value):.12g}"
     return printable(value if isinstance(value, str) else json.dumps(value, default=str))
+
+
+def study_factors(results: StudyResults) -> tuple[Factor, ...]:
+    """The factors that have two levels or more among the runs that were not `not_run`."""
+    runs = results.runs
+    # Of an unfinished study the rows may happen to change two factors together that the others will tell apart.
+    is_finished = len(runs) >= results.planned
+    tied = tied_names(runs, results.factors) if is_finished else [[name] for name in results.factors]
+    return find_factors(runs[was_run(runs)], results.factors, tied)
 
 
 def find_factors(

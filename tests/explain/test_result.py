@@ -32,7 +32,7 @@ HELD = confirm(Count(3, 3), {"slower": Count(0, 3)})
             "not confirmed",
             "0 of 3, over other frames 2 of 3",
         ),
-        (Confirmation(Count(1, 3)), "undecided", "not confirmed", "0 of 3"),
+        (Confirmation(Count(0, 3)), "undecided", "not confirmed", "0 of 3"),
     ],
 )
 def test_a_change_is_given_credit_where_it_holds_over_other_frames(confirmation, verdict, on_slower, counts):
@@ -43,6 +43,12 @@ def test_a_change_is_given_credit_where_it_holds_over_other_frames(confirmation,
     assert told.sentence().endswith(f"unchanged 9 of 9, over other frames {confirmation.unchanged}")
     assert ("hangs on where the frames fall" in told.sentence()) == (verdict == "undecided")
     assert by_change([told])["slower"] == Count(int(verdict == "explained"), 1)
+
+
+def test_a_loss_that_is_rare_over_other_frames_asks_for_more_repeats():
+    told = result(Confirmation(Count(2, 3)))
+    assert told.verdict == "undecided"
+    assert "over other frames it comes too rarely to tell, take more repeats: slower (0 of 3)" in told.sentence()
 
 
 def test_losses_of_one_path_are_not_counted_as_independent():
