@@ -33,7 +33,10 @@ class ExplainParams(Params):
     """How the losses are explained."""
 
     repeats: int = Field(
-        3, ge=3, le=100, description="SLAM runs of each change, twice as many for a loss that does not always come"
+        3,
+        ge=3,
+        le=100,
+        description="SLAM runs of each change; twice as many over other frames, and of a rare loss",
     )
     before_m: float = Field(3.0, ge=0.5, description="metres of the path driven before a loss")
     after_m: float = Field(1.5, ge=0.1, description="metres of the path driven after its start")

@@ -11,6 +11,8 @@ from slamgym.types import SlamEvent, SlamTrajectory, TrackingState, TrackResult
 
 DARK = 40.0
 QUICK_PX = 15.0
+CLEAR = 0.1
+"""Below that, phase correlation has found no movement that is the image's."""
 
 
 class Picky:
@@ -54,8 +56,8 @@ class Dizzy(Picky):
 
     def cannot_bear(self, grey):
         window = cv2.createHanningWindow(grey.shape[::-1], cv2.CV_32F)
-        (dx, _), _ = cv2.phaseCorrelate(self.before, grey, window)
-        return abs(dx) > QUICK_PX
+        (dx, _), response = cv2.phaseCorrelate(self.before, grey, window)
+        return abs(dx) > QUICK_PX and response > CLEAR
 
 
 class Dies(Picky):

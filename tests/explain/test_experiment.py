@@ -36,8 +36,8 @@ def test_the_right_change_is_found_and_the_controls_are_unchanged(dizzy_result):
     assert [one.name for one in result.cures] == ["half the turn rate", "half the speed"]
     assert result.verdict == "explained"
     assert (
-        "vanishes with half the turn rate (0 of 2, over other frames 0 of 3) or with half the speed "
-        "(0 of 2, over other frames 0 of 3); unchanged 6 of 6, over other frames 3 of 3" in result.sentence()
+        "vanishes with half the turn rate (0 of 2, over other frames 0 of 4) or with half the speed "
+        "(0 of 2, over other frames 0 of 4); unchanged 6 of 6, over other frames 4 of 4" in result.sentence()
     )
 
 
@@ -66,11 +66,11 @@ def test_what_is_credited_is_confirmed_from_starts_of_its_own(dizzy_result):
         yaml.safe_load((run / "config.yaml").read_text())["run"]["reset_options"]["stretch_m"]
         for run in other.glob("*/*")
     ]
-    assert len({start_m for start_m, _ in stretches}) == 9
+    assert len({start_m for start_m, _ in stretches}) == 12
     assert all(begin_m - 0.3 <= start_m < begin_m and last_m == end_m for start_m, last_m in stretches)
     assert [(one.name, one.count) for one in result.confirmation.changes] == [
-        ("half the turn rate", Count(0, 3)),
-        ("half the speed", Count(0, 3)),
+        ("half the turn rate", Count(0, 4)),
+        ("half the speed", Count(0, 4)),
     ]
 
 
@@ -89,7 +89,7 @@ def test_data_holds_what_was_found(dizzy_result):
     assert told["first_looks"] == [{"stretch_m": list(result.case.stretch_m), "lost": 2, "repeats": 2}]
     (slower,) = [one for one in told["changes"] if one["name"] == "half the turn rate"]
     assert (slower["verdict"], slower["over_other_frames"]["lost"]) == ("vanishes", 0)
-    assert told["unchanged_over_other_frames"] == {"lost": 3, "repeats": 3}
+    assert told["unchanged_over_other_frames"] == {"lost": 4, "repeats": 4}
     assert [one["p"] for one in told["controls"]] == [1.0] * 3
 
 
