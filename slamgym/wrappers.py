@@ -107,7 +107,7 @@ class SlamWrapper(
         """See `SlamParams.recorded`."""
         return dict(self._recorded)
 
-    def slam_timing(self) -> dict[str, float]:
+    def slam_timing(self) -> dict[str, float | str]:
         """See `SlamRun.timing`; not in `info`, which is the same on every computer."""
         return self._run.timing()
 

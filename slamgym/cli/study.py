@@ -14,13 +14,13 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 from slamgym.cli.study_table import level_table
 from slamgym.cli.terminal import notes, printing, results, say, show_table, told_warnings, working
+from slamgym.computer import cores
 from slamgym.report.page import write_report
 from slamgym.report.study import study_content
 from slamgym.study.estimate import estimate
 from slamgym.study.execution import OnProgress, StudyProgress
 from slamgym.study.folder import StudyFolder
 from slamgym.study.plan import plan_study, run_count
-from slamgym.study.pool import cores
 from slamgym.study.results import StudyResults
 from slamgym.study.run import check_workers, run_study
 from slamgym.study.spec import StudySpec, read_study

@@ -35,6 +35,8 @@ def study_facts(results: StudyResults, judged: JudgedRuns) -> dict[str, Any]:
         "Round trips": _round_trips_text(table),
         "SLAM": listed(_distinct(table, "slam")),
         "Versions": ", ".join(_versions(table)),
+        "Run": _when_text(table),
+        "Computer": listed(_distinct(table, "timing.computer")),
         "A failed run": f"{FAILED}; a run that could not be started does not count",
     }
     return {label: text for label, text in facts.items() if text}
@@ -135,6 +137,12 @@ def _round_trips_text(table: pd.DataFrame) -> str:
     closed = int((numbers(able, "loops_closed") > 0).sum())
     loops = f"; with loop closing on, a loop was seen to close in {closed:,} of {count(len(able), 'run')}"
     return f"{count(drives, 'drive')} back to the start{loops if len(able) else ''}"
+
+
+def _when_text(table: pd.DataFrame) -> str:
+    """The days, in UTC, on which the first and the last run ended."""
+    days = sorted(ended[:10] for ended in _distinct(table, "timing.ended"))
+    return " to ".join(dict.fromkeys((days[0], days[-1]))) if days else ""
 
 
 def _distinct(table: pd.DataFrame, column: str) -> list[str]:

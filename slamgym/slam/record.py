@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from datetime import UTC, datetime
 from typing import NamedTuple
 
 import numpy as np
 
+from slamgym.computer import computer_name
 from slamgym.eval.robustness import untracked_runs
 from slamgym.slam.history import FrameHistory, WholeHistory
 from slamgym.slam.pace import Pace
@@ -54,6 +56,7 @@ class SlamRun:
         self._pace = Pace() if session.sync == "realtime" else None
         self._late_s: list[float] = []
         self._frames_dropped = 0
+        self._ended = ""
 
     @property
     def last(self) -> TrackResult:
@@ -88,6 +91,7 @@ class SlamRun:
     def finish(self) -> SlamRecord:
         """End the run and put together the record of its frames, of which there must be at least one."""
         final = self._session.finish()
+        self._ended = datetime.now(UTC).isoformat(timespec="seconds")
         results = [one.result for one in self._fed]
         truth_known = np.array([one.has_truth for one in self._fed])
         record = SlamRecord(
@@ -113,11 +117,12 @@ class SlamRun:
             return replace(record, outcome="crashed", failure=_OTHER_STAMPS)
         return record
 
-    def timing(self) -> dict[str, float]:
-        """What the run took on this computer, NaN where nothing was timed.
+    def timing(self) -> dict[str, float | str]:
+        """What the run took, and where; NaN where nothing was timed.
 
         `track_ms_median`, `track_ms_p95`: time of the SLAM for a frame; `lockstep_wait_s`: for its threads, in all;
-        `late_ms_median`, `late_ms_max`: how late frames were fed in real time.
+        `late_ms_median`, `late_ms_max`: how late frames were fed in real time;
+        `computer`: its processor; `ended`: when, in UTC as of ISO 8601, "" before.
         """
         track_ms, late_ms = 1e3 * np.array(self._session.track_s), 1e3 * np.array(self._late_s)
         return {
@@ -126,6 +131,8 @@ class SlamRun:
             "lockstep_wait_s": self._session.lockstep_wait_s,
             "late_ms_median": float(np.median(late_ms)) if len(late_ms) else np.nan,
             "late_ms_max": float(late_ms.max()) if len(late_ms) else np.nan,
+            "computer": computer_name(),
+            "ended": self._ended,
         }
 
     def _note_loss(self, result: TrackResult) -> None:

@@ -1,6 +1,5 @@
 """About how long a study takes and what it fills, before any of it is done."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
@@ -9,6 +8,7 @@ from pathlib import Path
 from slamgym import MAX_EPISODE_STEPS
 from slamgym.agents import AGENTS
 from slamgym.camera import PinholeCamera
+from slamgym.computer import cores
 from slamgym.env import BLUR_SAMPLES
 from slamgym.eval.datasets import read_sequence
 from slamgym.params import DriveParams, SlamParams
@@ -131,7 +131,7 @@ def _fed(run: PlannedRun, frames: _Frames) -> int:
 def _slam_s(run: PlannedRun, frames: _Frames) -> float:
     if run.slam.get("slam_sync", _USUAL.slam_sync) == "realtime":
         return RUN_S + frames.duration_s
-    crowding = max(1.0, run.busy_processes / (os.cpu_count() or 1))
+    crowding = max(1.0, run.busy_processes / cores())
     return (
         RUN_S + _fed(run, frames) * frames.size * SLAM_S.get(run.slam.get("slam", _USUAL.slam), USUAL_SLAM_S) * crowding
     )

@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 from multiprocessing import get_context
 from typing import Any, ClassVar, NamedTuple, Protocol
 
+from slamgym.computer import cores
 from slamgym.errors import ConfigError
 from slamgym.slam.process_tree import process_tree
 from slamgym.slam.program import signal_after
@@ -37,11 +38,6 @@ class Pool(Protocol):
     def close(self) -> None:
         """End what is still under way."""
         ...
-
-
-def cores() -> int:
-    """How many this process may use."""
-    return len(os.sched_getaffinity(0))
 
 
 class _Worker(NamedTuple):

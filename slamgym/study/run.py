@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection, Iterator
 from contextlib import closing, contextmanager, nullcontext, suppress
 from pathlib import Path
 
+from slamgym.computer import cores
 from slamgym.errors import ConfigError, OutputError
 from slamgym.interrupt import deferred_interrupt
 from slamgym.study.dask_pool import DaskPool
@@ -12,7 +13,7 @@ from slamgym.study.execution import Execution, OnProgress
 from slamgym.study.folder import Plan, StudyFolder, check_grown, locked, write_plan
 from slamgym.study.growing_table import GrowingTable
 from slamgym.study.plan import plan_study
-from slamgym.study.pool import LocalPool, Pool, cores
+from slamgym.study.pool import LocalPool, Pool
 from slamgym.study.results import StudyResults
 from slamgym.study.spec import StudySpec, factor_names, write_study
 from slamgym.study.table import open_study

@@ -49,3 +49,11 @@ def test_of_many_values_the_differing_ones_are_shown_first():
     old = repeated([("a", level, 0) for level in range(8)], 1).assign(**{"slam_options.features": range(8)})
     (change,) = compared(old.assign(**{"slam_options.features": [*range(7), 9]}), old, ("speed",)).settings
     assert str(change) == "slam_options.features: 7, 0, 1, 2, 3 and 3 more -> 9, 0, 1, 2, 3 and 3 more"
+
+
+def test_another_computer_is_told():
+    old = repeated([("a", 1, 0)], **{"timing.computer": "AMD EPYC, 2 cores"})
+    new = old.assign(**{"timing.computer": "AMD EPYC, 8 cores"})
+    assert [str(change) for change in compared(new, old).settings] == [
+        "computer: AMD EPYC, 2 cores -> AMD EPYC, 8 cores"
+    ]

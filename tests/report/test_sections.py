@@ -7,7 +7,7 @@ from slamgym.eval.statistics import Interval
 from slamgym.report.accuracy import run_threshold, threshold_section
 from slamgym.report.causes import causes_section, causes_text
 from slamgym.report.correlations import correlations_section
-from slamgym.report.facts import study_facts
+from slamgym.report.facts import driven, study_facts
 from slamgym.report.failures import failures_section, trend_text, trends
 from slamgym.report.judged import judged_runs, of_complete_paths
 from slamgym.report.overview import figures
@@ -251,3 +251,63 @@ def test_facts_tell_round_trips_and_loops(column, value):
     assert facts["Paths"] == "3 paths of dataset 0 in 1 house"
     assert facts["Versions"] == "slamgym 0.1.0"
     assert "Not run" not in facts
+
+
+def test_facts_tell_where_and_when():
+    made = varied_study(paths=2, repeats=1)
+    when = {"timing.ended": ["2026-03-02T23:59:59+00:00", "2026-03-01T08:00:00+00:00"]}
+    results = changed(made, **when, **{"timing.computer": "AMD EPYC, 2 cores"})
+    facts = study_facts(results, judged_runs(results))
+    assert (facts["Run"], facts["Computer"]) == ("2026-03-01 to 2026-03-02", "AMD EPYC, 2 cores")
+    one_day = changed(made, **{"timing.ended": "2026-03-01T08:00:00+00:00"})
+    assert study_facts(one_day, judged_runs(one_day))["Run"] == "2026-03-01"
+    assert "Run" not in study_facts(made, judged_runs(made))
+
+
+def test_of_recorded_sequences_time_and_distance_come_from_the_frames():
+    made = varied_study(paths=2, repeats=1)
+    # 21 frames that were fed, 20 steps: of 1 and of 3 frames of the sequence.
+    recorded = changed(
+        made, duration_s=np.nan, distance_m=np.nan, frames_fed=21, fps=10.0, stride=[0, 2], velocity_m_per_frame=0.1
+    )
+    seconds, metres = driven(recorded.runs)
+    assert seconds == pytest.approx([2.0, 6.0])
+    assert metres == pytest.approx([2.0, 2.0])
+
+
+def test_a_heat_map_has_the_first_factor_to_the_right():
+    made = varied_study({"speed": [0.5, 1.0, 1.5], "stride": [0, 1]}, paths=2, repeats=1)
+    fails = (made.runs["speed"] == 1.5) & (made.runs["stride"] == 0)
+    judged = judged_runs(changed(made, success=~fails))
+    (heat_map,) = [p for p in failures_section(judged, []).pictures if p.name == "heat_map_speed_stride"]
+    axes = heat_map.draw().axes[0]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("speed (m/s)", "stride (frames left out)")
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["0.5", "1", "1.5"]
+    written = {tuple(int(p) for p in text.get_position()): text.get_text() for text in axes.texts}
+    assert {place for place, text in written.items() if text == "2/2"} == {(2, 0)}
+    assert set(written) == {(x, y) for x in range(3) for y in range(2)}
+
+
+def test_a_table_of_midpoints_has_the_curves_figures():
+    made = varied_study({"speed": [0.2, 0.6, 1.0, 1.4]}, paths=20)
+    (trend,) = trends(judged_runs(made))
+    (row,) = failures_section(judged_runs(made), [trend]).tables[0].frame.to_dict("records")
+    middle = trend.midpoint
+    assert [row["half fail at"], row["95 % from"], row["95 % to"]] == [middle.estimate, middle.low, middle.high]
+    assert middle.low < middle.estimate < middle.high
+    assert (row["runs"], row["failed"]) == (len(made.runs), int((~made.runs["success"]).sum()))
+
+
+def test_sequences_of_one_name_in_two_datasets_are_two_paths():
+    made = varied_study(paths=4, repeats=2, datasets=2)
+    number = made.runs["drive_id"].str[-1].astype(int)
+    judged = judged_runs(changed(made, path=(number // 2).astype(str)))
+    assert judged.paths == 4
+    assert set(judged.table["place"]) == {"dataset 0: 0", "dataset 1: 0", "dataset 0: 1", "dataset 1: 1"}
+    assert set(judged_runs(made).table["place"]) == set(made.runs["path"])
+
+
+def test_relative_errors_of_a_path_are_those_of_its_successful_runs():
+    made = varied_study(paths=2, repeats=2)
+    judged = judged_runs(changed(made, success=[True, False, False, False], rpe_trans_rmse_m=[0.1, 9.0, 8.0, 7.0]))
+    assert judged.cells["rpe_trans_rmse_m"].tolist() == pytest.approx([0.1, np.nan], nan_ok=True)

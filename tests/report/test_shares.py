@@ -1,10 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 
+from slamgym.eval.statistics import Interval
 from slamgym.report.judged import judged_runs
 from slamgym.report.pairs import difference_text, furthest, ratio_text
-from slamgym.report.shares import MOST_CURVE_RUNS, _some_paths, compare_levels, failure_trend
+from slamgym.report.shares import FEWEST_PATHS, MOST_CURVE_RUNS, _some_paths, compare_levels, failure_trend
 from slamgym.study.results import StudyResults
 from tests.report.varied_study import varied_study
 
@@ -135,3 +138,39 @@ def test_of_very_many_runs_whole_paths_are_drawn():
     assert len(drawn) == MOST_CURVE_RUNS
     assert (drawn.groupby("place").size() == 10).all()
     assert len(_some_paths(table.assign(place="one"))) == 2 * MOST_CURVE_RUNS
+
+
+def test_the_ratio_of_the_accuracy_counts_each_path_once():
+    # Three pairs of one path where the ATE is 8 times as large, one pair each of two others where it is as large.
+    rows = [("p0", 1, stride, level, True, ate) for stride in range(3) for level, ate in (("off", 0.1), ("on", 0.8))]
+    rows += [(path, 1, 0, level, True, 0.1) for path in ("p1", "p2") for level in ("off", "on")]
+    judged = study_of(rows, ["stride", "loop"])
+    (compared,) = compare_levels(judged, judged.factors[1])
+    assert compared.both_paths == 3
+    assert compared.ratio.estimate == pytest.approx(2.0)  # the cube root of 8 * 1 * 1
+
+
+@pytest.mark.parametrize(("paths", "is_seen"), [(FEWEST_PATHS - 1, False), (FEWEST_PATHS, True)])
+def test_a_trend_takes_so_many_paths(paths, is_seen):
+    made = judged_runs(varied_study({"speed": [0.2, 0.6, 1.4, 1.8]}, paths=paths, repeats=6, slope=12.0))
+    assert failure_trend(made, made.factors[0]).is_seen is is_seen
+
+
+@pytest.mark.parametrize(("paths", "differs"), [(FEWEST_PATHS - 1, False), (FEWEST_PATHS, True)])
+def test_a_ratio_takes_so_many_paths(paths, differs):
+    rows = [(f"p{k}", 1, level, True, ate) for k in range(paths) for level, ate in (("off", 0.1), ("on", 0.3))]
+    judged = study_of(rows, ["loop"])
+    (compared,) = compare_levels(judged, judged.factors[0])
+    assert compared.ratio_differs is differs
+
+
+def test_the_midpoint_ends_where_levels_end():
+    made = judged_runs(varied_study({"speed": [0.4, 0.8, 1.2, 1.6]}, paths=12))
+    trend = failure_trend(made, made.factors[0])
+
+    def ends(low, high):
+        moved = replace(trend, curve=replace(trend.curve, midpoint=Interval(1.0, low, high)))
+        return moved.midpoint.low, moved.midpoint.high
+
+    assert ends(0.4, 1.6) == (0.4, 1.6)
+    assert ends(0.39, 1.61) == (-np.inf, np.inf)

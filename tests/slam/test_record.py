@@ -1,9 +1,11 @@
 import time
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
 
+from slamgym.computer import computer_name
 from slamgym.eval.robustness import find_losses
 from slamgym.slam.record import SlamRun, run_sequence
 from slamgym.slam.session import Limits, SlamSession
@@ -83,6 +85,8 @@ def test_in_real_time_frames_wait_until_they_are_due(faulty, config, frames):
     assert (len(record.states), record.frames_dropped) == (6, 0)
     assert 0 <= timing["late_ms_median"] <= timing["late_ms_max"] < 300
     assert took_s >= 1.5
+    assert timing["computer"] == computer_name()
+    assert abs(datetime.now(UTC) - datetime.fromisoformat(timing["ended"])) < timedelta(minutes=1)
 
 
 def test_frames_that_a_hanging_slam_was_not_there_for_are_lost_not_dropped(faulty, config, frames):

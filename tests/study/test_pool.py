@@ -3,7 +3,8 @@ import time
 
 import pytest
 
-from slamgym.study.pool import LocalPool, cores
+from slamgym.computer import cores
+from slamgym.study.pool import LocalPool
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from slamgym.report.comparison.pairing import DRIVE_NAMES, level_order, some_of
 from slamgym.report.levels import level_name
 
 CONDITIONS = ("busy_processes", "fps")
+COMPUTER = "timing.computer"
 PREFIX = "run."
 VERSIONS = "versions."
 HOUSE = "run.versions.house_sha256"
@@ -41,12 +42,14 @@ def _is_setting(name: str) -> bool:
     root = name.split(".")[0]
     known = root in DRIVE_NAMES or root in SlamParams.model_fields or root in CONDITIONS
     # The scene belongs to the path; where paths differ, runs have no partners. An agent is told by "run.agent".
-    return name.startswith((PREFIX + VERSIONS, *DRIVEN_BY)) or (known and name not in ("scene", "agent"))
+    return name.startswith((PREFIX + VERSIONS, *DRIVEN_BY, COMPUTER)) or (known and name not in ("scene", "agent"))
 
 
 def _change(name: str, before: frozenset[str], now: frozenset[str]) -> SettingChange:
     of_drive = name.split(".")[0] in DRIVE_NAMES or name.startswith((HOUSE, *DRIVEN_BY))
-    return SettingChange(name.removeprefix(PREFIX), _shown(before, now), _shown(now, before), of_drive)
+    return SettingChange(
+        name.removeprefix(PREFIX).removeprefix("timing."), _shown(before, now), _shown(now, before), of_drive
+    )
 
 
 def _values(runs: pd.DataFrame, name: str) -> frozenset[str]:
