@@ -11,7 +11,6 @@ map.png          seen from above: grid and planned path of a drive, true path, a
 slam.log         what the SLAM printed, the last MiB of it
 """
 
-import json
 from collections.abc import Callable
 from itertools import count
 from pathlib import Path
@@ -19,15 +18,14 @@ from typing import Any, Protocol
 
 import numpy as np
 import pandas as pd
-import yaml
 
 from slamgym.eval.plots import plot_map
 from slamgym.eval.robustness import estimate_by_frame, evaluated_frames
-from slamgym.eval.summary import without_nan
 from slamgym.eval.trajectories import Trajectory, write_stamps, write_tum
 from slamgym.files import check_free, draft
 from slamgym.geometry import quaternion_xyzw
 from slamgym.interrupt import deferred_interrupt
+from slamgym.run_record import write_record
 from slamgym.scenes.occupancy import OccupancyGrid
 from slamgym.types import FloatArray, IntArray, SlamRecord, Summary, TrackingState
 
@@ -130,10 +128,7 @@ def _slam_table(record: SlamRecord) -> pd.DataFrame:
 
 
 def _write_files(run: Run, folder: Path) -> None:
-    # Through JSON: a user may have given paths or NumPy's numbers, which YAML cannot write.
-    config = json.loads(json.dumps(run.config, default=str))
-    (folder / "config.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
-    (folder / "episode.json").write_text(json.dumps(without_nan(run.summary), indent=2, allow_nan=False) + "\n")
+    write_record(folder, run.config, run.summary)
     if run.truth is not None:
         write_tum(folder / "groundtruth.txt", run.truth)
     frames_table(run).to_csv(folder / "frames.csv", index=False, float_format="%.9g")

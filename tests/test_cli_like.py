@@ -60,4 +60,7 @@ def test_other_parameters_beside_it_are_refused(beside, flags, folder, tmp_path,
 def test_a_folder_without_a_run_is_told(tmp_path, capsys):
     with pytest.raises(SystemExit):
         main(["run", "--like", str(tmp_path), "--out", str(tmp_path / "again")])
-    assert "expected a run folder, with a config.yaml" in capsys.readouterr().err
+    assert (
+        "expected the folder of a run, got one whose config.yaml cannot be read; name another"
+        in capsys.readouterr().err
+    )

@@ -1,6 +1,5 @@
 """The run that is to be explained, as its folder tells it."""
 
-import json
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-import yaml
 
 from slamgym.agents import AGENTS, Agent, Cautious
 from slamgym.errors import ConfigError, SlamgymError, TrajectoryWarning
 from slamgym.explain.changes import Setup
 from slamgym.params import DriveParams, SlamInLoopParams
+from slamgym.run_record import read_config, read_results
 from slamgym.study.slam_work import read_planned
 from slamgym.study.table import open_study
 
@@ -74,17 +73,15 @@ def _tell_recorded(path: Path, losses: int, all_losses: bool) -> None:
 
 def read_run(folder: Path) -> DrivenRun:
     """The run in a folder of `slamgym run`, or of a study; raises ConfigError where it cannot be driven again."""
+    config, results = read_config(folder, ANOTHER), read_results(folder, ANOTHER)
     try:
-        config = yaml.safe_load((folder / "config.yaml").read_text())
-        results = json.loads((folder / "episode.json").read_text())
         if "sequence" in config["run"]:
             raise ConfigError(f"{folder}: expected a run over a drive, got one over a recorded sequence, where {FIXED}")
         return _driven_run(folder, config, results)
     except SlamgymError:
         raise
-    except (OSError, ValueError, KeyError, TypeError, IndexError, AttributeError, yaml.YAMLError) as error:
-        got = _damage(error)
-        raise ConfigError(f"{folder}: expected the folder of a run, got {got}; name one of `slamgym run`") from None
+    except (OSError, ValueError, KeyError, TypeError, IndexError, AttributeError) as error:
+        raise ConfigError(f"{folder}: expected the folder of a run, got {_damage(error)}; {ANOTHER}") from None
 
 
 def _damage(error: Exception) -> str:
@@ -96,6 +93,7 @@ def _damage(error: Exception) -> str:
     return "a damaged one, whose config.yaml, episode.json and frames.csv cannot be those of one run"
 
 
+ANOTHER = "name one of `slamgym run`"
 FIXED = "nothing can be changed; explain a run of `slamgym run` or of a study's drive"
 
 

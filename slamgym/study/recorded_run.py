@@ -8,11 +8,10 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from slamgym.agents import Agent
 from slamgym.errors import ConfigError
 from slamgym.params import SlamParams
+from slamgym.run_record import read_config
 from slamgym.slam.backend import load_backend
 from slamgym.study.slam_work import read_planned
 
@@ -65,13 +64,9 @@ def changed_versions(then: Mapping[str, str], now: Mapping[str, str]) -> list[st
 
 
 def _read_config(folder: Path) -> dict[str, Any]:
-    path = folder / "config.yaml"
-    try:
-        config = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, yaml.YAMLError) as error:
-        why = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise ConfigError(f"{folder}: expected a run folder, with a config.yaml, got {why}; name another") from None
-    if not isinstance(config, dict) or not isinstance(config.get("run"), dict):
+    config = read_config(folder, "name another")
+    if not isinstance(config.get("run"), dict):
+        path = folder / "config.yaml"
         raise ConfigError(f"{path}: expected the parameters of a run, with an entry 'run', got none; name another")
     return config
 

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-import yaml
 
 from slamgym.errors import ConfigError, TrajectoryWarning
 from slamgym.files import draft
+from slamgym.run_record import read_config, read_results
 from slamgym.study.folder import Plan, StudyFolder, read_plan
 from slamgym.study.planned import PlannedRun
 from slamgym.study.results import StudyResults
@@ -25,6 +25,7 @@ from slamgym.study.slam_work import read_planned
 
 IDENTITY = ("run_id", "dataset", "path", "scene", "seed", "sequence", "repeat", "drive_id")
 NOT_RUN = "not_run"
+REPEAT = "start the study again to repeat it"
 
 Row = dict[str, Any]
 
@@ -115,23 +116,13 @@ def joined(table: pd.DataFrame, rows: Iterable[Row], plan: Plan) -> pd.DataFrame
 
 def run_row(folder: Path) -> Row:
     """The row of a finished run, from its folder. Raises ConfigError where it is not a study's run folder."""
-    try:
-        run = read_planned(folder)
-        config = yaml.load((folder / "config.yaml").read_text(), yaml.CSafeLoader)
-        results = json.loads((folder / "episode.json").read_text())
-    except (OSError, ValueError, yaml.YAMLError) as error:
-        raise _damaged(folder, f"{type(error).__name__}: {error}".splitlines()[0]) from None
-    if not isinstance(config, dict):
-        raise _damaged(folder, f"config.yaml is {config!r:.40}")
-    if not isinstance(results, dict) or "status" not in results:
-        raise _damaged(folder, f"episode.json is {results!r:.40}")
+    run = read_planned(folder)
+    config, results = read_config(folder, REPEAT), read_results(folder, REPEAT)
+    if "status" not in results:
+        raise ConfigError(f"{folder}: expected a run with a status in its episode.json, got none; {REPEAT}")
     if run is None:
         raise ConfigError(f"{folder}: expected a run of a study, got a folder without its plan; move it elsewhere")
     return _row(run, config, results)
-
-
-def _damaged(folder: Path, why: str) -> ConfigError:
-    return ConfigError(f"{folder}: expected the folder of a finished run ({why}); start the study again to repeat it")
 
 
 def not_run_row(run: PlannedRun, failure: str) -> Row:

@@ -1,6 +1,5 @@
 """One piece of a study's work, as a worker does it: whatever happens, what comes back is plain data."""
 
-import json
 import math
 import signal
 import warnings
@@ -9,10 +8,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import yaml
-
 from slamgym.errors import OutputError, SlamgymError
 from slamgym.files import draft
+from slamgym.run_record import write_record
 from slamgym.study.drive_work import load_drive, record_planned_drive
 from slamgym.study.folder import StudyFolder
 from slamgym.study.planned import PlannedDrive, PlannedRun
@@ -84,11 +82,10 @@ def write_crashed(run: PlannedRun, drive_folder: Path, out: Path, failure: str) 
 
     Raises what `run_planned` raises.
     """
-    config = json.loads(json.dumps(config_of(run, load_drive(drive_folder)), default=str))
+    config = config_of(run, load_drive(drive_folder))
     with draft(out) as place:
         place.mkdir()
-        (place / "config.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
-        (place / "episode.json").write_text(json.dumps({**CRASHED, "failure": failure}, indent=2) + "\n")
+        write_record(place, config, {**CRASHED, "failure": failure})
         write_planned(place, run)
 
 

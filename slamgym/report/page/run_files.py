@@ -1,6 +1,5 @@
 """What the page shows of a run, read from its folder."""
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from slamgym.errors import SlamgymError
+from slamgym.run_record import read_results
 from slamgym.types import BoolArray, FloatArray, IntArray
 
 NOT_INITIALIZED, OK, LOST = "not_initialized", "ok", "lost"
@@ -51,7 +51,7 @@ def read_run(folder: Path) -> RunFiles | None:
 
 
 def _read(folder: Path) -> RunFiles:
-    summary = json.loads((folder / "episode.json").read_text(encoding="utf-8"))
+    summary = read_results(folder, "run it again")
     frames = _table(folder / "frames.csv", FRAME_COLUMNS)
     fed = frames[frames["slam_state"].notna()]
     start_ns = int(fed["stamp_ns"].iloc[0]) if len(fed) else 0
