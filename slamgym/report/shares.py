@@ -34,9 +34,10 @@ class LevelComparison:
 
     runs, failed: of the level; base_runs, base_failed: of the base. pairs: of conditions, over `paths` paths.
     difference: share of failed runs of the level minus that of the base. ratio: ATE of the level over that of the base,
-    geometric mean over `both_paths` paths where both succeeded. corrected_for: number of comparisons within the factor
-    that the intervals hold for together (Bonferroni). others: whether other factors were varied. depends_on: titles of
-    those between whose first and last level the difference changes, for all of them together at 95 %.
+    geometric mean over `both_paths` paths where both succeeded, the ends NaN of fewer than FEWEST_PATHS. corrected_for:
+    number of comparisons within the factor that the intervals hold for together (Bonferroni). others: whether other
+    factors were varied. depends_on: titles of those between whose first and last level the difference changes, for all
+    of them together at 95 %.
     """
 
     factor: Factor
@@ -62,7 +63,7 @@ class LevelComparison:
 
     @property
     def ratio_differs(self) -> bool:
-        return bool(self.both_paths >= FEWEST_PATHS and (self.ratio.low > 1 or self.ratio.high < 1))
+        return bool(self.ratio.low > 1 or self.ratio.high < 1)
 
 
 def compare_levels(judged: JudgedRuns, factor: Factor) -> list[LevelComparison]:
@@ -127,6 +128,8 @@ def _ratio(pairs: pd.DataFrame, place: "pd.Index[str]", confidence: float) -> tu
     by_path = logs[np.isfinite(logs)].groupby(level=0).mean().to_numpy()
     if not len(by_path):
         return _NOTHING, 0
+    if len(by_path) < FEWEST_PATHS:  # an interval of so few would span orders of magnitude
+        return Interval(float(np.exp(by_path.mean())), np.nan, np.nan, confidence), len(by_path)
     # More paths than that do not change the interval so that a person would see it.
     chosen = by_path if len(by_path) <= _MOST_BOOTSTRAP else _drawn(by_path, _MOST_BOOTSTRAP)
     return bootstrap_interval(chosen, "mean", confidence).exp(), len(by_path)

@@ -34,6 +34,7 @@ def test_levels_are_compared_on_the_same_paths_only():
     assert compared.difference.estimate == -0.5
     assert compared.both_paths == 1
     assert compared.ratio.estimate == pytest.approx(2.0)
+    assert np.isnan([compared.ratio.low, compared.ratio.high]).all()  # too few paths for an interval
 
 
 def test_levels_are_compared_at_the_same_levels_of_the_other_factors():
