@@ -47,9 +47,8 @@ def _is_setting(name: str) -> bool:
 
 def _change(name: str, before: frozenset[str], now: frozenset[str]) -> SettingChange:
     of_drive = name.split(".")[0] in DRIVE_NAMES or name.startswith((HOUSE, *DRIVEN_BY))
-    return SettingChange(
-        name.removeprefix(PREFIX).removeprefix("timing."), _shown(before, now), _shown(now, before), of_drive
-    )
+    told = "computer" if name == COMPUTER else name.removeprefix(PREFIX)
+    return SettingChange(told, _shown(before, now), _shown(now, before), of_drive)
 
 
 def _values(runs: pd.DataFrame, name: str) -> frozenset[str]:
