@@ -1,6 +1,7 @@
 import pytest
 
 from slamgym.errors import ConfigError
+from slamgym.report.shares import FEWEST_PATHS
 from slamgym.study.estimate import estimate
 from slamgym.study.plan import plan_study
 from slamgym.study.shipped import find_study, shipped_studies
@@ -49,6 +50,11 @@ def test_each_can_be_planned_in_every_size(name):
         assert {run.slam["slam"] for run in runs} == {"orbslam3"}
         # Seeds from 1,000,000 on are those that the vocabulary was trained on.
         assert all(int(run.drive.params["scene"].rpartition(":")[2]) < 1_000_000 for run in runs)
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_each_has_enough_paths_for_its_report_to_tell_something(name):
+    assert all(len({run.drive.path for run in runs}) >= FEWEST_PATHS for runs in plans(name))
 
 
 @pytest.mark.parametrize("name", STUDIES)
