@@ -205,7 +205,8 @@ def failure_trend(judged: JudgedRuns, factor: Factor, table: pd.DataFrame | None
         factor, curve, rising,
         paths=rows["place"].nunique(),
         share_at={factor.levels[k]: share.estimate for k, share in zip(tried, shares, strict=True)},
-        fits=all(map(_holds, shares, curve.probability(factor.values[tried]))),
+        # A step may take any share at its own level, as the runs have it.
+        fits=bool(np.isinf(curve.slope)) or all(map(_holds, shares, curve.probability(factor.values[tried]))),
     )  # fmt: skip
 
 

@@ -177,6 +177,17 @@ def test_a_curve_that_does_not_fit_is_no_trend():
     assert np.isnan([row["half fail at"], row["95 % from"], row["95 % to"]]).all()
 
 
+def test_failures_that_begin_at_one_level_are_a_rise():
+    results = with_shares([0, 0, 2 / 3, 1], factor="speed")
+    (trend,) = trends(judged_runs(results))
+    assert np.isinf(trend.curve.slope)
+    assert study_content(results).headlines[0].startswith("Half of the runs fail above 2.0 m/s (95 % interval ")
+    (row,) = failures_section(judged_runs(results), [trend]).tables[0].frame.to_dict("records")
+    assert row["half fail at"] == pytest.approx(2.0)
+    curve = failures_section(judged_runs(results), [trend]).pictures[0].draw().axes[0]
+    assert any(len(line.get_xdata()) > 10 for line in curve.lines)
+
+
 def test_levels_that_differ_without_a_rise_are_no_uncertain_trend():
     (trend,) = trends(judged_runs(with_shares([1, 0, 0, 0, 1])))
     assert not trend.changes
